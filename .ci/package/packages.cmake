@@ -52,7 +52,7 @@ set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 string(JOIN ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "tuft ${same_version}" libglm-dev libopenmesh-dev libembree-dev
   libtbb-dev libfmt-dev libtinygltf-dev libsqlite3-dev libsqlitecpp-dev libzstd-dev zlib1g-dev libxxhash-dev
   libpugixml-dev libfontconfig-dev libfreetype-dev libharfbuzz-dev
-  libpodofo-dev libpolyclipping-dev libtomlplusplus-dev)
+  libmeshoptimizer-dev libpodofo-dev libpolyclipping-dev libtomlplusplus-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "cmake, pkg-config")
 set(CPACK_DEBIAN_DEV_DESCRIPTION "libraries that unwrap 3D models and paint on them
 Headers, static libraries and the CMake package of tuft, for programs that

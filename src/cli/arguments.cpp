@@ -80,6 +80,19 @@ CLI::App* add_unwrap(CLI::App& app, Unwrap& unwrap) {
     return command;
 }
 
+CLI::App* add_decimate(CLI::App& app, Decimate& decimate) {
+    auto* command = app.add_subcommand("decimate", "make a working copy of a large scan with fewer triangles");
+    command->add_option("MODEL", decimate.model, "mesh")->required();
+    command->add_option("-o,--output", decimate.output, "write the working copy (.ply)")->required();
+    command->add_option("--triangles", decimate.triangles, "most triangles of the copy")
+        ->check(number_in(4, kMostTexels, "POSITIVE"));
+    command->add_option("--error", decimate.error_mm, "collapse no edge that moves the surface by more, in millimetres")
+        ->check(number_in(1e-9, kFarthestMm, "POSITIVE"));
+    add_reading(command, decimate, "unit of the model file (default: a guess from its size)");
+    add_common(command, decimate.common);
+    return command;
+}
+
 CLI::App* add_replay(CLI::App& app, Replay& replay) {
     auto* command = app.add_subcommand("replay", "paint a project's strokes again, on the same or a revised model");
     command->add_option("PROJECT", replay.project, "project file (.tuft)")->required();
@@ -328,7 +341,7 @@ Entry make_entry(CLI::App& app, CLI::App* (*add)(CLI::App&, T&)) {
 std::vector<Entry> add_commands(CLI::App& app) {
     return {
         make_entry(app, add_paint),  make_entry(app, add_write),      make_entry(app, add_inspect),
-        make_entry(app, add_unwrap), make_entry(app, add_replay),     make_entry(app, add_export),
+        make_entry(app, add_unwrap), make_entry(app, add_decimate), make_entry(app, add_replay),     make_entry(app, add_export),
         make_entry(app, add_decals), make_entry(app, add_trajectory), make_entry(app, add_layer),
         make_entry(app, add_fill),   make_entry(app, add_mask),       make_entry(app, add_render),
         make_entry(app, add_film),   make_entry(app, add_brush),      make_entry(app, add_bias),

@@ -20,9 +20,11 @@ inline Vec3 vector_of(const std::vector<double>& v) {
 
 /// How a model file is read. Empty: the project's, else the default.
 struct FileReading {
-    std::string unit;   ///< um … ft
-    std::string up;     ///< y or z
-    std::string sides;  ///< as `mesh::open_sides_of`
+    std::string unit;     ///< um … ft
+    std::string up;       ///< y or z
+    std::string sides;    ///< as `mesh::open_sides_of`
+    double chord_mm = 0;  ///< of CAD surfaces; 0: by the size
+    std::string groups;   ///< of CAD files: bodies or faces
 };
 
 /// Options of all commands that read a model.
@@ -120,6 +122,14 @@ struct Inspect : FileReading {
 struct Unwrap {
     std::filesystem::path model, output, picture;
     Surface surface;
+    Common common;
+};
+
+/// `tuft decimate MODEL -o OUTPUT`
+struct Decimate : FileReading {
+    std::filesystem::path model, output;
+    std::size_t triangles = 0;  ///< most triangles; 0: by error_mm alone
+    double error_mm = 0;        ///< 0: by triangles alone
     Common common;
 };
 
@@ -309,7 +319,7 @@ struct TrajectoryWork {
     Common common;
 };
 
-using Command = std::variant<Paint, Write, Inspect, Unwrap, Replay, Export, Render, Brush, BiasCorrection, Bench,
+using Command = std::variant<Paint, Write, Inspect, Unwrap, Decimate, Replay, Export, Render, Brush, BiasCorrection, Bench,
                              LayerWork, FillWork, MaskWork, InkWork, DeviceWork, Decals, TrajectoryWork, Film>;
 
 /// Parses the command line into `command`. Returns false, with the exit status in `status`, when there is nothing to

@@ -351,7 +351,7 @@ std::vector<Case> make_cases(const Bench& a, std::uint32_t size, Console& consol
         cases.push_back(std::move(c));
     };
     if (!a.model.empty()) {
-        add(a.model.stem().string(), io::read_model(a.model));
+        add(a.model.stem().string(), io::read_model(a.model, cad_reading(a.model, a.surface)));
     } else {
         add("sphere-100k", sphere(158));
         if (!a.quick) add("sphere-1M", sphere(500));

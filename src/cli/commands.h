@@ -12,6 +12,7 @@ int run(const Paint& arguments);
 int run(const Write& arguments);
 int run(const Inspect& arguments);
 int run(const Unwrap& arguments);
+int run(const Decimate& arguments);
 int run(const Replay& arguments);
 int run(const Export& arguments);
 int run(const Render& arguments);

@@ -258,7 +258,7 @@ constexpr std::uint32_t kPage = 2048;  // texels that the file's UVs are measure
 
 /// Reads and repairs a mesh.
 MeshFacts mesh_facts(const Inspect& a, const ProgressFn& progress) {
-    mesh::PolygonSoup soup = io::read_model(a.file);
+    mesh::PolygonSoup soup = io::read_model(a.file, cad_reading(a.file, a));
     Box bounds;
     for (const Vec3& p : soup.points) bounds.add(p);
     const mesh::UnitGuess guess = mesh::guess_unit(bounds);

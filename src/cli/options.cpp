@@ -67,6 +67,14 @@ void add_reading(CLI::App* app, FileReading& reading, const std::string& what) {
                     "front of the open parts of the model file, onto which ink goes: outward (default; a part that is "
                     "inside out is turned round), file (as the file has it), turned (the other side)")
         ->check(CLI::IsMember({"outward", "file", "turned"}));
+    app->add_option("--chord", reading.chord_mm,
+                    "STEP and IGES: distance between the surfaces and their triangles, in millimetres (default: a "
+                    "5000th of the size)")
+        ->check(number_in(1e-6, kFarthestMm, "POSITIVE"));
+    app->add_option("--groups", reading.groups,
+                    "STEP and IGES: what becomes a group of faces: bodies (default; of one colour each), or each face "
+                    "of the CAD model, whose edges --seams groups then cuts along")
+        ->check(CLI::IsMember({"bodies", "faces"}));
 }
 
 void add_surface(CLI::App* app, Surface& s) {

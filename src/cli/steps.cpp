@@ -34,6 +34,13 @@ FileFrame frame_of(const std::string& unit, const std::string& up, const FileFra
     return {.unit = unit.empty() ? otherwise.unit : unit, .y_up = up.empty() ? otherwise.y_up : up == "y"};
 }
 
+io::CadReading cad_reading(const fs::path& path, const FileReading& how) {
+    if ((how.chord_mm > 0 || !how.groups.empty()) && io::is_model_file(path) && !io::is_cad_file(path))
+        throw UsageError("--chord and --groups are for STEP and IGES files, and " + path.string() + " is none");
+    return {.chord = how.chord_mm * kMillimetre,
+            .groups = how.groups == "faces" ? io::CadGroups::faces : io::CadGroups::bodies};
+}
+
 stroke::ModelOptions model_options(const Surface& s, Console& console) {
     stroke::ModelOptions options;
     options.unwrap.size = s.atlas_size;
@@ -63,7 +70,7 @@ struct Read {
 
 Read read_file(const fs::path& path, const FileReading& how, mesh::RepairOptions& repair, Console& console) {
     report(repair.progress, "reading", 0);
-    Read read{io::read_model(path), frame_of(how.unit, how.up)};
+    Read read{io::read_model(path, cad_reading(path, how)), frame_of(how.unit, how.up)};
     report(repair.progress, "reading", 1);
     const auto fixed = io::metres_per_unit_of(path);
     if (how.unit.empty() && !fixed) {

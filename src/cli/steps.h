@@ -9,6 +9,7 @@
 
 #include "cli/arguments.h"
 #include "cli/console.h"
+#include "io/model/read_import.h"
 #include "io/project/project.h"
 #include "render/picture/picture.h"
 #include "stroke/document/document.h"
@@ -29,6 +30,10 @@ struct Loaded {
     stroke::Model model;
     FileFrame frame;
 };
+
+/// Returns how the surfaces of a CAD file become triangles. Throws `UsageError` where the options say it of another
+/// file.
+io::CadReading cad_reading(const std::filesystem::path& path, const FileReading& how);
 
 /// Reads, repairs and unwraps a model file. Its unit is that of the arguments or the format, else it is guessed from
 /// the size. A guess other than millimetres is reported.

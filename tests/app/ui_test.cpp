@@ -62,7 +62,8 @@ TEST(Contrast, OfBlackOnWhiteIsTwentyOne) {
 bool has_english(const std::string& text) {
     static const std::regex kWord("[A-Za-z]{2,}"),
         kName(
-            "mm|km|um|cm|in|ft|PLY|OBJ|STL|OFF|SVG|glb|GLB|obj|ply|stl|off|tuft|endsolid|UV|MiB|gltf|JSON|TOML|UTF|"
+            "mm|km|um|cm|in|ft|PLY|OBJ|STL|OFF|SVG|IGES|glb|GLB|obj|ply|stl|off|tuft|endsolid|UV|MiB|gltf|JSON|TOML|"
+            "UTF|"
             "xyz|end|header|glTF|FBX|DAE|COLLADA|X3D|AMF|MF|none|svg|STEP|dae|fbx|or|and");
     const std::string words = std::regex_replace(text, std::regex("'[^']*'|\xe2\x80\x9c[^\xe2]*\xe2\x80\x9d"), "");
     for (std::sregex_iterator it(words.begin(), words.end(), kWord), end; it != end; ++it)

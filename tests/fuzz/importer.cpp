@@ -17,6 +17,7 @@
 #include <map>
 #include <string>
 
+#include "io/model/import_cad.h"
 #include "io/model/import_scene.h"
 #include "promise.h"
 
@@ -28,7 +29,7 @@ namespace {
 constexpr std::size_t kMostInput = std::size_t{1} << 16, kMostOutput = std::size_t{1} << 24;
 constexpr rlim_t kMemory = rlim_t{1} << 30;  // that a process may take beyond what it began with
 constexpr int kPatience = 2000;              // milliseconds
-constexpr int kRuns = 5000;                  // of one process: Assimp loses memory
+constexpr int kRuns = 5000;                  // of one process: the libraries lose memory
 
 enum class Stage : int { reading, walking, done };
 
@@ -78,8 +79,11 @@ void import_one(const char* format) {
     s.out = 0;
     s.stage = Stage::reading;
     try {
+        const bool is_cad = std::strcmp(format, "stp") == 0 || std::strcmp(format, "igs") == 0;
+        const std::span<const char> input(s.input, s.in);
         const std::vector<char> packed =
-            io::import_scene(importer_of(format), format, {s.input, s.in}, [&] { s.stage = Stage::walking; });
+            is_cad ? io::pack_scene(io::import_cad(format, input, {}))
+                   : io::import_scene(importer_of(format), format, input, [&] { s.stage = Stage::walking; });
         s.stage = Stage::done;
         if (packed.size() <= kMostOutput) {
             std::memcpy(s.output, packed.data(), packed.size());

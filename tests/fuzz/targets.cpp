@@ -86,7 +86,7 @@ void run_mesh(Input input) {
     refusing([&] { check_surface(mesh::build_surface(Read(chars_of(input), empty_folder() / "input"))); });
 }
 
-/// The importer of FBX and DAE, then what `read_import` makes of it.
+/// An importer, then what `read_import` makes of what it hands over.
 template <const char* Format>
 void run_import(Input input) {
     const std::vector<char> packed = import_in_child(Format, input);
@@ -95,9 +95,9 @@ void run_import(Input input) {
         check_surface(mesh::build_surface(io::soup_of(io::unpack_scene(packed, "input"), empty_folder() / "input")));
     });
 }
-constexpr char kFbx[] = "fbx", kDae[] = "dae";
+constexpr char kFbx[] = "fbx", kDae[] = "dae", kStp[] = "stp", kIgs[] = "igs";
 
-/// What the importer of FBX and DAE hands over to this process.
+/// What an importer hands over to this process.
 void run_scene(Input input) {
     refusing([&] {
         io::FileScene scene = io::unpack_scene(chars_of(input), "input");
@@ -217,6 +217,8 @@ constexpr Target kTargets[] = {
     {"gltf", run_mesh<io::read_gltf>, 1500, true},
     {"fbx", run_import<kFbx>, 1500, false},
     {"dae", run_import<kDae>, 1500, true},
+    {"stp", run_import<kStp>, 300, true},
+    {"igs", run_import<kIgs>, 300, true},
     {"scene", run_scene, 2000, false},
     {"3mf", run_mesh<io::read_3mf>, 1500, false},
     {"x3d", run_mesh<io::read_x3d>, 1500, true},

@@ -50,6 +50,8 @@ quietly 'cd /root; tuft paint /usr/share/tuft/models/bowl.ply --strokes /usr/sha
 echo "== models by the importer"  # a program of its own, with libraries of its own
 cp "$(dirname "$0")"/../fuzz/corpus/fbx/box.fbx "$(dirname "$0")"/../fuzz/corpus/dae/box.dae "$root/root/"
 quietly 'cd /root; for model in box.fbx box.dae; do tuft inspect "$model" | grep "15 triangles"; done'
+cp "$(dirname "$0")"/../fuzz/corpus/stp/box.stp "$(dirname "$0")"/../fuzz/corpus/igs/box.igs "$root/root/"
+quietly 'cd /root; for model in box.stp box.igs; do tuft inspect "$model" | grep "12 triangles"; done'
 
 echo "== tuft-studio"
 quietly 'apt-get -qq install -y --no-install-recommends /debs/tuft-studio_*.deb libgl1-mesa-dri'

@@ -217,9 +217,8 @@ TEST(Gltf, WhatItCannotReadIsNamed) {
     j["buffers"][0]["uri"] = "../gone.bin";
     EXPECT_NE(fault(j).find("which is outside its folder"), std::string::npos) << fault(j);
     j = triangle();
-    j["extensionsRequired"] = {"KHR_draco_mesh_compression"};
     j["accessors"][0].erase("bufferView");
-    EXPECT_NE(fault(j).find("compressed"), std::string::npos) << fault(j);
+    EXPECT_NE(fault(j).find("accessor 0 has no buffer view"), std::string::npos) << fault(j);
 }
 
 TEST(Gltf, ARequiredExtensionThatIsNotReadIsRefusedByName) {
@@ -230,7 +229,7 @@ TEST(Gltf, ARequiredExtensionThatIsNotReadIsRefusedByName) {
     EXPECT_EQ(fault(j),
               "x.gltf: it requires the glTF extension 'ACME_spline_surfaces', which tuft does not know; export it "
               "without that extension");
-    for (const char* known : {"KHR_texture_basisu", "EXT_mesh_gpu_instancing", "EXT_meshopt_compression"}) {
+    for (const char* known : {"KHR_texture_basisu", "EXT_mesh_gpu_instancing", "EXT_texture_webp"}) {
         j["extensionsRequired"] = {known};
         EXPECT_NE(fault(j).find(std::string("requires the glTF extension ") + known), std::string::npos) << fault(j);
         EXPECT_NE(fault(j).find("export"), std::string::npos) << "what to do";

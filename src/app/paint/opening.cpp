@@ -74,11 +74,11 @@ struct Opening::Job {
 
 namespace {
 
-Inspected inspect_file(const fs::path& path, const ProgressFn& progress) {
+Inspected inspect_file(const fs::path& path, const io::CadReading& cad, const ProgressFn& progress) {
     Inspected out;
     out.path = path;
     report(progress, "reading", 0);
-    out.soup = io::read_model(path);
+    out.soup = io::read_model(path, cad);
     Box bounds;
     for (const Vec3& p : out.soup.points) bounds.add(p);
     const auto fixed = io::metres_per_unit_of(path);
@@ -235,10 +235,10 @@ void Opening::start(Step step) {
     });
 }
 
-void Opening::inspect(const fs::path& path) {
-    start([path](Job& job) {
+void Opening::inspect(const fs::path& path, const io::CadReading& cad) {
+    start([path, cad](Job& job) {
         job.kind = Job::kLook;
-        job.result.inspected = inspect_file(path, job.progress());
+        job.result.inspected = inspect_file(path, cad, job.progress());
     });
 }
 

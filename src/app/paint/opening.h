@@ -8,6 +8,7 @@
 
 #include "app/paint/paint_thread.h"
 #include "core/message.h"
+#include "io/model/read_model.h"
 #include "mesh/read/polygon_soup.h"
 #include "mesh/repair/inspect.h"
 
@@ -32,6 +33,7 @@ struct OpenOptions {
     bool own_colours = true;    ///< shows the model's own colours, if any
     bool turned_round = false;  ///< the other side of open parts is their front than reading chose
     bool follow = true;         ///< of a revised model: strokes go where it, or their part of it, was moved
+    io::CadReading cad;         ///< by which a CAD file was read
 };
 
 /// Purpose of opening a project.
@@ -55,7 +57,7 @@ class Opening {
     Opening();
     ~Opening();
 
-    void inspect(const std::filesystem::path& path);
+    void inspect(const std::filesystem::path& path, const io::CadReading& cad = {});
     void prepare(Inspected inspected, const OpenOptions& options, const std::filesystem::path& project);
     /// Prepares a model that replaces another: paints the strokes of the project `former` on it.
     void revise(Inspected inspected, const OpenOptions& options, const std::filesystem::path& former,

@@ -1,10 +1,12 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "app/panels/panels.h"
 #include "core/text/units.h"
+#include "io/model/read_model.h"
 
 namespace fs = std::filesystem;
 
@@ -77,11 +79,32 @@ void frame_rows(Ui& ui, const Inspected& in, FileFrame& frame) {
                 : frame.unit == guess ? ui.tr("guessed from the size")
                                       : std::string(ui.tr("guessed")) + ": " + guess);
     name_row(ui, "Upward axis");
-    std::string up = frame.y_up || in.unit_fixed ? "y" : "z";
+    std::string up = frame.y_up || (in.unit_fixed && !io::is_cad_file(in.path)) ? "y" : "z";
     ImGui::BeginDisabled(in.unit_fixed);
     if (ui.combo("Up", up, axes, 90)) frame.y_up = up == "y";
     ImGui::EndDisabled();
     if (in.unit_fixed) note_beside(ui.tr("the format says so"));
+}
+
+/// Groups and chord tolerance of a CAD file. Returns true when it is to be read anew.
+bool cad_rows(Ui& ui, io::CadReading& cad) {
+    static const std::vector<std::string> groups{"bodies", "faces"},
+        chords{"from the size", "0.5 mm", "0.1 mm", "0.02 mm", "0.005 mm"};
+    constexpr std::array<double, 5> kChords{0, 0.5, 0.1, 0.02, 0.005};
+    const io::CadReading before = cad;
+    name_row(ui, "Groups of the file");
+    std::string group = groups[cad.groups == io::CadGroups::faces ? 1 : 0];
+    if (ui.combo("CAD groups", group, groups, 90))
+        cad.groups = group == groups[1] ? io::CadGroups::faces : io::CadGroups::bodies;
+    name_row(ui, "Chord tolerance");
+    std::size_t chosen = 0;
+    for (std::size_t i = 0; i < kChords.size(); ++i)
+        if (kChords[i] * kMillimetre == cad.chord) chosen = i;
+    std::string chord = chords[chosen];
+    if (ui.combo("Chord tolerance", chord, chords, 120))
+        for (std::size_t i = 0; i < chords.size(); ++i)
+            if (chords[i] == chord) cad.chord = kChords[i] * kMillimetre;
+    return !(cad == before);
 }
 
 /// Texels, material and sides of the model that is made of a file. `area`: m².
@@ -128,6 +151,7 @@ void open_dialog(Session& s) {
     fact(ui, "Size", print("%.1f \xc3\x97 %.1f \xc3\x97 %.1f mm", size.x, size.y, size.z));
     fact(ui, "Triangles", grouped(m.n_triangles));
     frame_rows(ui, in, s.project.options.frame);
+    const bool reread = io::is_cad_file(in.path) && cad_rows(ui, s.project.options.cad);
     model_rows(s, m, m.area * factor * factor);
     ui.heading("Checked and repaired");
     if (in.defects.empty()) ui.note(ui.tr("The mesh is sound; nothing had to be repaired."));
@@ -142,10 +166,14 @@ void open_dialog(Session& s) {
     ImGui::SameLine();
     const bool accepted = ui.primary_button(action, 120, fits);
     end_dialog(s.ui);
-    if (accepted)
-        accept_inspected(s);
-    else if (cancelled)
+    if (reread) {
+        s.project.opening.inspect(in.path, s.project.options.cad);
         s.project.inspected.reset();
+    } else if (accepted) {
+        accept_inspected(s);
+    } else if (cancelled) {
+        s.project.inspected.reset();
+    }
 }
 
 void opening_progress(Session& s) {

@@ -96,10 +96,12 @@ void open_path(Session& s, const fs::path& path) {
     s.project.revision.source.clear();
     s.dialogs.file.close();
     std::error_code ec;
-    if (fs::is_regular_file(path, ec) && (path.extension() == ".tuft" || io::is_project(path)))
+    if (fs::is_regular_file(path, ec) && (path.extension() == ".tuft" || io::is_project(path))) {
         s.project.opening.load(path, s.project.recovery.note.new_project(path.stem().string()));
-    else
+    } else {
+        s.project.options.cad = {};
         s.project.opening.inspect(path);
+    }
 }
 
 void open_sample(Session& s, const fs::path& path) {

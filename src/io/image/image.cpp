@@ -1,7 +1,5 @@
 #include "io/image/image.h"
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cstring>
@@ -11,6 +9,7 @@
 #include "core/system/library_fault.h"
 #include "io/image/exr_header.h"
 #include "io/image/image_codec.h"
+#include "io/image/loaded_module.h"
 #include "stroke/surface/model.h"
 
 namespace fs = std::filesystem;
@@ -18,34 +17,11 @@ namespace fs = std::filesystem;
 namespace tuft::io {
 namespace {
 
-constexpr const char* kModule = "libtuft_images.so";
-
 const ImageCodec& load_codec() {
-    std::vector<fs::path> places;
-    std::error_code ec;
-    const fs::path program = fs::read_symlink("/proc/self/exe", ec).parent_path();
-    if (!ec) {
-        places.push_back(program / kModule);
-        places.push_back(program.parent_path() / "lib" / "tuft" / kModule);
-        places.push_back(program.parent_path() / TUFT_LIBDIR / "tuft" / kModule);
-    }
-    const fs::path prefix = data_folder().parent_path().parent_path();  // of an installed share/tuft
-    places.push_back(prefix / TUFT_LIBDIR / "tuft" / kModule);
-    places.emplace_back(TUFT_IMAGES_BUILT);
-    std::string tried, fault;
-    for (const fs::path& place : places) {
-        tried += (tried.empty() ? "" : ", ") + place.string();
-        if (!fs::exists(place, ec)) continue;
-        void* module = dlopen(place.c_str(), RTLD_LAZY | RTLD_LOCAL);
-        if (!module) {
-            fault = dlerror();
-            continue;
-        }
-        using Entry = const ImageCodec* (*)();
-        if (void* entry = dlsym(module, kImageCodecSymbol)) return *reinterpret_cast<Entry>(entry)();
-        fault = "it has no " + std::string(kImageCodecSymbol);
-    }
-    throw Error(Message("the picture library cannot be loaded: {} (looked for {})", fault, tried));
+    const ModuleSymbol found = find_in_module("libtuft_images.so", TUFT_IMAGES_BUILT, kImageCodecSymbol);
+    using Entry = const ImageCodec* (*)();
+    if (found.symbol) return *reinterpret_cast<Entry>(found.symbol)();
+    throw Error(Message("the picture library cannot be loaded: {} (looked for {})", found.fault, found.tried));
 }
 
 const ImageCodec& codec() {

@@ -116,13 +116,16 @@ class Groups {
 
 void add_polygons(const FileScene& scene, mesh::SoupBuilder& builder, Groups& groups) {
     std::size_t corner = 0;
+    if (!scene.normals.empty()) builder.soup.corner_normals.reserve(scene.normals.size());
     for (std::size_t p = 0; p < scene.counts.size(); corner += scene.counts[p], ++p) {
         const std::span corners(scene.corners.data() + corner, scene.counts[p]);
         std::span<const Vec2f> uvs;
         if (!scene.uvs.empty()) uvs = std::span(scene.uvs).subspan(corner, scene.counts[p]);
         if (std::any_of(uvs.begin(), uvs.end(), [](const Vec2f& uv) { return std::isnan(uv.x) || std::isnan(uv.y); }))
             uvs = {};
-        builder.add_polygon(corners, uvs, groups.get(scene.polygon_parts[p]), static_cast<long>(p) + 1);
+        std::span<const Vec3f> normals;
+        if (!scene.normals.empty()) normals = std::span(scene.normals).subspan(corner, scene.counts[p]);
+        builder.add_polygon(corners, uvs, groups.get(scene.polygon_parts[p]), static_cast<long>(p) + 1, normals);
     }
 }
 

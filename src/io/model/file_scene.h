@@ -11,8 +11,8 @@
 #include "mesh/read/polygon_soup.h"
 
 /// \file
-/// Scene of one file, as the readers of FBX, DAE, 3MF and X3D fill it, and its conversion into a polygon soup. Inside
-/// `io` only. Any thread.
+/// Scene of one file, as the readers of FBX, DAE, 3MF, X3D, STEP and IGES fill it, and its conversion into a polygon
+/// soup. Inside `io` only. Any thread.
 namespace tuft::io {
 
 /// A material of the file.
@@ -38,6 +38,7 @@ struct FileScene {
     std::vector<std::uint32_t> counts;                 ///< [n_polygons] corners of each
     std::vector<std::uint32_t> polygon_parts;          ///< [n_polygons] index in `parts`
     std::vector<Vec2f> uvs;                            ///< [n_corners], v up, NaN where there is none; or empty
+    std::vector<Vec3f> normals;  ///< [n_corners], unit, outward, NaN where there is none; or empty
     std::vector<FilePart> parts;
     std::vector<FileMaterial> materials;
     std::vector<Message> warnings;
@@ -49,7 +50,7 @@ struct FileScene {
 /// in the folder of `model`. Indices must be in range. Throws `Error` where there is no face.
 mesh::PolygonSoup soup_of(FileScene&& scene, const std::filesystem::path& model);
 
-/// Serialises a scene, and reads it back: the importer's process (import_main.cpp) sends it to this one. `unpack_scene`
+/// Serialises a scene, and reads it back: an importer's process (import_process.h) sends it to this one. `unpack_scene`
 /// checks all counts and indices. It throws `Error` naming `file` where one is wrong.
 std::vector<char> pack_scene(const FileScene& scene);
 FileScene unpack_scene(std::span<const char> bytes, const std::string& file);

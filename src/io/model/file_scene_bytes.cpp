@@ -10,7 +10,7 @@
 namespace tuft::io {
 namespace {
 
-constexpr std::string_view kMagic = "tuft scene 1\n";
+constexpr std::string_view kMagic = "tuft scene 2\n";
 
 class Writer {
   public:
@@ -86,8 +86,9 @@ void check(const FileScene& s, const Reader& reader) {
     std::size_t corners = 0;
     for (const std::uint32_t n : s.counts) corners += n;
     if (corners != s.corners.size() || s.polygon_parts.size() != s.counts.size() ||
-        (!s.uvs.empty() && s.uvs.size() != corners) || (!s.colours.empty() && s.colours.size() != s.points.size()) ||
-        !all_below(s.corners, s.points.size()) || !all_below(s.polygon_parts, s.parts.size()))
+        (!s.uvs.empty() && s.uvs.size() != corners) || (!s.normals.empty() && s.normals.size() != corners) ||
+        (!s.colours.empty() && s.colours.size() != s.points.size()) || !all_below(s.corners, s.points.size()) ||
+        !all_below(s.polygon_parts, s.parts.size()))
         reader.fail();
     for (const FilePart& part : s.parts)
         if (part.material != kNone && part.material >= s.materials.size()) reader.fail();
@@ -114,6 +115,7 @@ std::vector<char> pack_scene(const FileScene& s) {
     out.list(s.counts);
     out.list(s.polygon_parts);
     out.list(s.uvs);
+    out.list(s.normals);
     out.value(std::uint64_t{s.parts.size()});
     for (const FilePart& part : s.parts) {
         out.list(part.object);
@@ -141,6 +143,7 @@ FileScene unpack_scene(std::span<const char> bytes, const std::string& file) {
     in.list(s.counts);
     in.list(s.polygon_parts);
     in.list(s.uvs);
+    in.list(s.normals);
     std::uint64_t n = 0;
     in.value(n);
     for (std::uint64_t i = 0; i < n; ++i) {  // each takes bytes, so a false count ends at the last one

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 
 #include "core/error.h"
@@ -15,6 +16,7 @@
 #include "core/system/library_fault.h"
 #include "core/text/nesting.h"
 #include "core/text/text.h"
+#include "io/model/gltf_compression.h"
 #include "io/model/materials.h"
 
 namespace fs = std::filesystem;
@@ -143,10 +145,11 @@ struct Extension {
     const char* advice;  ///< null: it changes nothing that tuft reads, and is handed on
 };
 
-/// Extensions that a file may require. Others may change where its triangles lie.
+/// Extensions that a file may require; the compressed ones are decoded first. Others may change where its triangles
+/// lie.
 constexpr std::array<Extension, 14> kExtensions{{
-    {"KHR_draco_mesh_compression", "its mesh is compressed; export it without compression"},
-    {"EXT_meshopt_compression", "its mesh is compressed; export it without compression"},
+    {"KHR_draco_mesh_compression", nullptr},
+    {"EXT_meshopt_compression", nullptr},
     {"KHR_texture_basisu", "its textures are in KTX 2; export them as PNG or JPEG"},
     {"EXT_texture_webp", "its textures are in WebP; export them as PNG or JPEG"},
     {"EXT_texture_avif", "its textures are in AVIF; export them as PNG or JPEG"},
@@ -215,11 +218,11 @@ std::string short_uri(const std::string& uri) {
     return uri.substr(0, std::min(comma, kMost)) + ",... (" + std::to_string(uri.size()) + " characters)";
 }
 
-GltfFile open_gltf(const std::vector<char>& bytes, const fs::path& path) {
+namespace {
+
+/// The same of a file whose container is sound, without compression.
+GltfFile open_plain(const std::vector<char>& bytes, const fs::path& path) {
     const std::string name = path.string();
-    check_container(bytes, name);
-    if (bytes.size() > std::numeric_limits<unsigned>::max()) throw Error(name, "is larger than 4 GiB");
-    check_extensions(json_of(bytes), name);
     Sandbox sandbox{path.has_parent_path() ? path.parent_path() : fs::path("."), {}, {}};
     tinygltf::TinyGLTF loader;
     GltfFile file;
@@ -256,6 +259,17 @@ GltfFile open_gltf(const std::vector<char>& bytes, const fs::path& path) {
     take_pictures_of_buffers(model, file.pictures);
     file.json = json_of(bytes);
     return file;
+}
+
+}  // namespace
+
+GltfFile open_gltf(const std::vector<char>& bytes, const fs::path& path) {
+    const std::string name = path.string();
+    check_container(bytes, name);
+    if (bytes.size() > std::numeric_limits<unsigned>::max()) throw Error(name, "is larger than 4 GiB");
+    check_extensions(json_of(bytes), name);
+    const std::optional<std::vector<char>> plain = decompress_gltf(bytes, path);
+    return open_plain(plain ? *plain : bytes, path);
 }
 
 }  // namespace tuft::io

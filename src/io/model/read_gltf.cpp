@@ -72,7 +72,7 @@ Rows rows_of(const tinygltf::Model& model, int index, int type, const std::strin
     if (accessor->type != type) fail("has the wrong type");
     if (accessor->sparse.isSparse) fail("is sparse, which tuft does not read; export the model without");
     const tinygltf::BufferView* view = element(model.bufferViews, accessor->bufferView);
-    if (!view) fail("has no buffer view (compressed meshes are not read; export without compression)");
+    if (!view) fail("has no buffer view, and so no values; export the model anew");
     const tinygltf::Buffer* buffer = element(model.buffers, view->buffer);
     if (!buffer) fail("has no buffer");
     const int component_size = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor->componentType));

@@ -9,7 +9,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <csignal>
 #include <cstring>
@@ -23,6 +25,7 @@
 #include "core/system/library_fault.h"
 #include "core/system/system_message.h"
 #include "io/model/file_scene.h"
+#include "io/model/import_cad.h"
 #include "io/model/import_scene.h"
 
 namespace fs = std::filesystem;
@@ -30,28 +33,40 @@ namespace fs = std::filesystem;
 namespace tuft::io {
 namespace {
 
-constexpr const char* kProgram = "tuft-import";
 constexpr std::size_t kMebibyte = std::size_t{1} << 20;
 
-const fs::path& importer() {
-    static const fs::path found = [] {
-        std::error_code ec;
-        std::vector<fs::path> places;
-        const fs::path program = fs::read_symlink("/proc/self/exe", ec).parent_path();
-        if (!ec) {
-            places.push_back(program / kProgram);
-            places.push_back(program.parent_path() / TUFT_LIBDIR / "tuft" / kProgram);
-        }
-        places.push_back(data_folder().parent_path().parent_path() / TUFT_LIBDIR / "tuft" / kProgram);
-        places.emplace_back(TUFT_IMPORT_BUILT);
-        std::string tried;
-        for (const fs::path& place : places) {
-            if (access(place.c_str(), X_OK) == 0) return place;
-            tried += (tried.empty() ? "" : ", ") + place.string();
-        }
-        throw Error(Message("{}, which reads FBX and DAE, is not there (looked for {})", std::string(kProgram), tried));
-    }();
-    return found;
+/// A program that reads models, and what a file may cost it.
+struct Importer {
+    const char* program;
+    bool is_cad;
+    rlim_t seconds, bytes;        ///< of computing and of memory, for any file
+    double seconds_per_mebibyte;  ///< more, by the size of the file
+    rlim_t bytes_per_byte;        ///< likewise
+};
+// A sound file of a million triangles has 40 MB and takes 3 s and 1 GB.
+constexpr Importer kMeshes{"tuft-import", false, 20, rlim_t{1} << 30, 0.5, 64};
+// The size of a CAD file does not say how many triangles its surfaces take: 2 MB may be a second or a minute.
+constexpr Importer kCad{"tuft-import-cad", true, 120, rlim_t{6} << 30, 20, 200};
+
+fs::path find_program(const Importer& importer) {
+    const std::string name = importer.program;
+    std::error_code ec;
+    std::vector<fs::path> places;
+    const fs::path program = fs::read_symlink("/proc/self/exe", ec).parent_path();
+    if (!ec) {
+        places.push_back(program / name);
+        places.push_back(program.parent_path() / TUFT_LIBDIR / "tuft" / name);
+    }
+    places.push_back(data_folder().parent_path().parent_path() / TUFT_LIBDIR / "tuft" / name);
+    places.push_back(fs::path(TUFT_IMPORT_BUILT) / name);
+    std::string tried;
+    for (const fs::path& place : places) {
+        if (access(place.c_str(), X_OK) == 0) return place;
+        tried += (tried.empty() ? "" : ", ") + place.string();
+    }
+    throw Error(Message(importer.is_cad ? "{}, which reads STEP and IGES, is not there (looked for {})"
+                                        : "{}, which reads FBX and DAE, is not there (looked for {})",
+                        name, tried));
 }
 
 /// A file without a name, in memory.
@@ -106,13 +121,14 @@ struct Cost {
 };
 
 /// By the size of the file, and within what this process may take itself.
-Cost cost_of(std::size_t file_bytes) {
+Cost cost_of(std::size_t file_bytes, const Importer& importer) {
     const auto own = [](__rlimit_resource what) {
         rlimit bounds{};
         return getrlimit(what, &bounds) == 0 ? bounds.rlim_cur : RLIM_INFINITY;
     };
-    // A sound file of a million triangles has 40 MB and takes 3 s and 1 GB.
-    const rlim_t seconds = 20 + file_bytes / kMebibyte / 2, bytes = (rlim_t{1} << 30) + 64 * file_bytes;
+    const double mebibytes = static_cast<double>(file_bytes) / kMebibyte;
+    const rlim_t seconds = importer.seconds + static_cast<rlim_t>(importer.seconds_per_mebibyte * mebibytes);
+    const rlim_t bytes = importer.bytes + importer.bytes_per_byte * file_bytes;
     return {.seconds = std::clamp<rlim_t>(own(RLIMIT_CPU) - 1, 1, seconds),
             .bytes = std::min({bytes, own(RLIMIT_AS), own(RLIMIT_FSIZE)})};
 }
@@ -120,10 +136,11 @@ Cost cost_of(std::size_t file_bytes) {
 /// A started importer; it is ended where this is left early.
 class Child {
   public:
-    Child(const char* format, int input, int output) {
-        const std::string program = importer().string();
-        std::string name = format;
-        char* const arguments[] = {const_cast<char*>(program.c_str()), name.data(), nullptr};
+    Child(const fs::path& file, std::vector<std::string> words, int input, int output) : program_(file.string()) {
+        const std::string& program = program_;
+        std::vector<char*> arguments{program_.data()};
+        for (std::string& word : words) arguments.push_back(word.data());
+        arguments.push_back(nullptr);
         posix_spawn_file_actions_t files;
         posix_spawn_file_actions_init(&files);
         posix_spawn_file_actions_adddup2(&files, input, 0);
@@ -140,7 +157,7 @@ class Child {
         posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
         posix_spawnattr_setpgroup(&attributes, 0);
         posix_spawnattr_setsigdefault(&attributes, &limits);
-        const int failed = posix_spawn(&pid_, program.c_str(), &files, &attributes, arguments, environ);
+        const int failed = posix_spawn(&pid_, program.c_str(), &files, &attributes, arguments.data(), environ);
         posix_spawnattr_destroy(&attributes);
         posix_spawn_file_actions_destroy(&files);
         if (failed) throw Error(program, Message("cannot be started: {}", system_message(failed)));
@@ -177,7 +194,7 @@ class Child {
         const int failed = errno;
         rlimit own{};  // that it has set itself by now: a lower one cannot be raised, and needs not
         if (failed == EPERM && prlimit(pid_, what, nullptr, &own) == 0 && own.rlim_max < hard) return;
-        throw Error(importer().string(), Message("cannot be limited: {}", system_message(failed)));
+        throw Error(program_, Message("cannot be limited: {}", system_message(failed)));
     }
     /// With what it started itself.
     void end() {
@@ -187,6 +204,7 @@ class Child {
         pid_ = 0;
     }
 
+    std::string program_;
     pid_t pid_ = 0;
 };
 
@@ -209,22 +227,25 @@ Message failure(std::optional<int> status, const Cost& cost) {
 Message fault_of(std::string_view words) {
     for (const char* own : kImportFaults)
         if (words == own) return Message(own);
+    for (const char* own : kCadFaults)
+        if (words == own) return Message(own);
     return Message("cannot be read: {}", library_fault(words));
 }
 
-mesh::PolygonSoup read_import(const char* format, const std::vector<char>& bytes, const fs::path& path) {
+mesh::PolygonSoup read_import(const Importer& importer, std::vector<std::string> words, const std::vector<char>& bytes,
+                              const fs::path& path) {
     const std::string name = path.string();
-    const Cost cost = cost_of(bytes.size());
+    const Cost cost = cost_of(bytes.size(), importer);
     const MemoryFile input, output;
     input.write_all(bytes);
-    Child child(format, input.fd(), output.fd());
+    Child child(find_program(importer), std::move(words), input.fd(), output.fd());
     child.limit(cost);
     const std::optional<int> status = child.wait(cost.patience());
     if (!status || WIFSIGNALED(*status)) throw Error(name, failure(status, cost));
     const std::vector<char> result = output.read_all();
     constexpr std::string_view kFault = "fault: ";
-    const std::string_view words(result.data(), result.size());
-    if (words.starts_with(kFault)) throw Error(name, fault_of(words.substr(kFault.size())));
+    const std::string_view said(result.data(), result.size());
+    if (said.starts_with(kFault)) throw Error(name, fault_of(said.substr(kFault.size())));
     if (WEXITSTATUS(*status) != 0) throw Error(name, "is damaged: reading it failed");
     return soup_of(unpack_scene(result, name), path);
 }
@@ -232,11 +253,21 @@ mesh::PolygonSoup read_import(const char* format, const std::vector<char>& bytes
 }  // namespace
 
 mesh::PolygonSoup read_fbx(const std::vector<char>& bytes, const fs::path& path) {
-    return read_import("fbx", bytes, path);
+    return read_import(kMeshes, {"fbx"}, bytes, path);
 }
 
 mesh::PolygonSoup read_dae(const std::vector<char>& bytes, const fs::path& path) {
-    return read_import("dae", bytes, path);
+    return read_import(kMeshes, {"dae"}, bytes, path);
+}
+
+mesh::PolygonSoup read_cad(CadFormat format, const std::vector<char>& bytes, const fs::path& path,
+                           const CadReading& how) {
+    std::array<char, 32> chord{};
+    const auto end = std::to_chars(chord.data(), chord.data() + chord.size(), how.chord).ptr;
+    return read_import(kCad,
+                       {format == CadFormat::step ? "stp" : "igs", std::string(chord.data(), end),
+                        how.groups == CadGroups::faces ? "faces" : "bodies"},
+                       bytes, path);
 }
 
 }  // namespace tuft::io

@@ -12,13 +12,12 @@
 #include "io/model/materials.h"
 #include "io/model/read_3mf.h"
 #include "io/model/read_gltf.h"
-#include "io/model/read_import.h"
 #include "io/model/read_x3d.h"
 
 namespace tuft::io {
 namespace {
 
-enum class Format { obj, ply, stl, off, glb, gltf, fbx, dae, threemf, x3d };
+enum class Format { obj, ply, stl, off, glb, gltf, fbx, dae, threemf, x3d, step, iges };
 
 std::string lower_extension(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
@@ -28,7 +27,7 @@ std::string lower_extension(const std::filesystem::path& path) {
 }
 
 std::optional<Format> by_extension(const std::filesystem::path& path) {
-    constexpr std::array<std::pair<std::string_view, Format>, 10> known{{{".obj", Format::obj},
+    constexpr std::array<std::pair<std::string_view, Format>, 14> known{{{".obj", Format::obj},
                                                                          {".ply", Format::ply},
                                                                          {".stl", Format::stl},
                                                                          {".off", Format::off},
@@ -37,7 +36,11 @@ std::optional<Format> by_extension(const std::filesystem::path& path) {
                                                                          {".fbx", Format::fbx},
                                                                          {".dae", Format::dae},
                                                                          {".3mf", Format::threemf},
-                                                                         {".x3d", Format::x3d}}};
+                                                                         {".x3d", Format::x3d},
+                                                                         {".step", Format::step},
+                                                                         {".stp", Format::step},
+                                                                         {".iges", Format::iges},
+                                                                         {".igs", Format::iges}}};
     const std::string extension = lower_extension(path);
     for (const auto& [name, format] : known)
         if (extension == name) return format;
@@ -48,6 +51,7 @@ std::optional<Format> by_extension(const std::filesystem::path& path) {
 std::optional<Format> by_content(std::string_view bytes) {
     if (bytes.starts_with("glTF")) return Format::glb;
     if (bytes.starts_with("Kaydara FBX")) return Format::fbx;
+    if (bytes.starts_with("ISO-10303-21;")) return Format::step;
     if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return Format::ply;
     for (const std::string_view magic : {"OFF", "COFF", "NOFF", "STOFF", "CNOFF", "STNOFF", "STCNOFF"})
         if (bytes.starts_with(magic) && bytes.size() > magic.size() &&
@@ -57,7 +61,8 @@ std::optional<Format> by_content(std::string_view bytes) {
     return std::nullopt;
 }
 
-mesh::PolygonSoup read_polygons(Format format, const std::vector<char>& bytes, const std::filesystem::path& path) {
+mesh::PolygonSoup read_polygons(Format format, const std::vector<char>& bytes, const std::filesystem::path& path,
+                                const CadReading& cad) {
     switch (format) {
         case Format::obj:
             return mesh::read_obj(bytes, path);
@@ -78,6 +83,10 @@ mesh::PolygonSoup read_polygons(Format format, const std::vector<char>& bytes, c
             return read_3mf(bytes, path);
         case Format::x3d:
             return read_x3d(bytes, path);
+        case Format::step:
+            return read_cad(CadFormat::step, bytes, path, cad);
+        case Format::iges:
+            return read_cad(CadFormat::iges, bytes, path, cad);
     }
     return {};
 }
@@ -88,7 +97,12 @@ bool is_model_file(const std::filesystem::path& path) {
     return by_extension(path).has_value();
 }
 
-mesh::PolygonSoup read_model(const std::filesystem::path& path) {
+bool is_cad_file(const std::filesystem::path& path) {
+    const std::optional<Format> format = by_extension(path);
+    return format == Format::step || format == Format::iges;
+}
+
+mesh::PolygonSoup read_model(const std::filesystem::path& path, const CadReading& cad) {
     const std::vector<char> bytes = read_file(path);
     std::optional<Format> format = by_content({bytes.data(), std::min<std::size_t>(bytes.size(), 16)});
     if (!format) format = by_extension(path);
@@ -97,7 +111,7 @@ mesh::PolygonSoup read_model(const std::filesystem::path& path) {
     if (bytes.size() >= 2 &&
         (std::memcmp(bytes.data(), "\xff\xfe", 2) == 0 || std::memcmp(bytes.data(), "\xfe\xff", 2) == 0))
         throw Error(path.string(), "is text in UTF-16; save it as UTF-8 or ASCII");
-    mesh::PolygonSoup soup = read_polygons(*format, bytes, path);
+    mesh::PolygonSoup soup = read_polygons(*format, bytes, path, cad);
     read_materials(soup, path);
     return soup;
 }

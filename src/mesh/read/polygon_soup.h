@@ -18,10 +18,13 @@
 namespace tuft::mesh {
 
 struct PolygonSoup {
-    std::vector<Vec3> points;                                ///< in the file's unit
-    std::vector<std::uint32_t> corners;                      ///< point index per polygon corner, all polygons in a row
-    std::vector<std::uint32_t> polygon_start;                ///< [n_polygons + 1] offsets into `corners`
-    std::vector<Vec2f> corner_uvs;                           ///< parallel to `corners`, v up, or empty
+    std::vector<Vec3> points;                  ///< in the file's unit
+    std::vector<std::uint32_t> corners;        ///< point index per polygon corner, all polygons in a row
+    std::vector<std::uint32_t> polygon_start;  ///< [n_polygons + 1] offsets into `corners`
+    std::vector<Vec2f> corner_uvs;             ///< parallel to `corners`, v up, or empty
+    /// Parallel to `corners`, or empty: unit normals of the surface that the file defines, in its axes, to the side
+    /// from which the corners run counter-clockwise; NaN where it defines none.
+    std::vector<Vec3f> corner_normals;
     std::vector<std::array<std::uint8_t, 4>> point_colours;  ///< [n_points] or empty
     std::vector<std::uint32_t> polygon_groups;               ///< [n_polygons] or empty
     std::vector<std::string> group_names;

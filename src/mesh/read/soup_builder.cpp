@@ -33,7 +33,7 @@ void SoupBuilder::add_point(const Vec3& p, long place) {
 }
 
 void SoupBuilder::add_polygon(std::span<const std::uint32_t> corners, std::span<const Vec2f> uvs, std::uint32_t group,
-                              long place) {
+                              long place, std::span<const Vec3f> normals) {
     if (corners.size() < 3) return short_polygons_.add(place);
     const std::size_t begin = soup.corners.size();
     if (begin + corners.size() > kMaxCorners) throw Error(file_, place, "too many faces");
@@ -54,6 +54,11 @@ void SoupBuilder::add_polygon(std::span<const std::uint32_t> corners, std::span<
     } else if (!soup.corner_uvs.empty()) {
         soup.corner_uvs.resize(soup.corners.size(), Vec2f(0));
         no_uv_.add(place);
+    }
+    if (!normals.empty() || !soup.corner_normals.empty()) {
+        soup.corner_normals.resize(begin, Vec3f(NAN));
+        soup.corner_normals.insert(soup.corner_normals.end(), normals.begin(), normals.end());
+        soup.corner_normals.resize(soup.corners.size(), Vec3f(NAN));
     }
     if (group != kNone) groups_used_ = true;
     soup.polygon_groups.push_back(group);
@@ -120,6 +125,7 @@ void SoupBuilder::drop_bad_points() {
         for (std::size_t c = begin; c < end; ++c, ++out_corner) {
             soup.corners[out_corner] = new_index[soup.corners[c]];
             if (!soup.corner_uvs.empty()) soup.corner_uvs[out_corner] = soup.corner_uvs[c];
+            if (!soup.corner_normals.empty()) soup.corner_normals[out_corner] = soup.corner_normals[c];
         }
     }
     if (!soup.polygon_start.empty()) {
@@ -129,6 +135,7 @@ void SoupBuilder::drop_bad_points() {
     soup.corners.resize(out_corner);
     soup.polygon_groups.resize(out);
     if (!soup.corner_uvs.empty()) soup.corner_uvs.resize(out_corner);
+    if (!soup.corner_normals.empty()) soup.corner_normals.resize(out_corner);
     soup.warnings.push_back(
         Message("{}, and with them {} faces",
                 bad_rows_.text("vertices are no finite numbers or lie beyond 1e10 and were dropped", unit_), dropped));

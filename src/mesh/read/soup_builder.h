@@ -36,9 +36,9 @@ class SoupBuilder {
     /// that use them.
     void add_point(const Vec3& p, long place);
     /// Adds a polygon over valid point indices. Polygons of fewer than three corners are dropped. `uvs` is empty or
-    /// has one entry per corner.
+    /// has one entry per corner, and so has `normals`.
     void add_polygon(std::span<const std::uint32_t> corners, std::span<const Vec2f> uvs, std::uint32_t group,
-                     long place);
+                     long place, std::span<const Vec3f> normals = {});
     /// Returns the index of the group with this name (as UTF-8, see `to_utf8`), and adds the group when it is new.
     /// `material` is the material name of its faces, as the file spells it.
     std::uint32_t group(const std::string& name, const std::string& material = "");

@@ -122,11 +122,14 @@ void keep_triangles(RawMesh& mesh, const std::vector<bool>& keep) {
         mesh.triangles[out] = mesh.triangles[t];
         if (!mesh.groups.empty()) mesh.groups[out] = mesh.groups[t];
         for (std::size_t k = 0; k < 3 && !mesh.uvs.empty(); ++k) mesh.uvs[3 * out + k] = mesh.uvs[3 * t + k];
+        for (std::size_t k = 0; k < 3 && !mesh.normals.empty(); ++k)
+            mesh.normals[3 * out + k] = mesh.normals[3 * t + k];
         ++out;
     }
     mesh.triangles.resize(out);
     if (!mesh.groups.empty()) mesh.groups.resize(out);
     if (!mesh.uvs.empty()) mesh.uvs.resize(3 * out);
+    if (!mesh.normals.empty()) mesh.normals.resize(3 * out);
     mesh.opposite.clear();
 }
 

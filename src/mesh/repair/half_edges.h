@@ -20,6 +20,7 @@ struct RawMesh {
     std::vector<Vec3f> positions;  ///< metres
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<Vec2f> uvs;                            ///< [3 n_triangles] or empty
+    std::vector<Vec3f> normals;                        ///< [3 n_triangles] of the file's surface, NaN: none; or empty
     std::vector<std::uint32_t> groups;                 ///< [n_triangles] or empty
     std::vector<std::array<std::uint8_t, 4>> colours;  ///< [n_vertices] or empty
     std::vector<std::uint32_t> opposite;               ///< [3 n_triangles] half-edge over the edge, or kNone

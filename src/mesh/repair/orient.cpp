@@ -178,6 +178,9 @@ void turn(RawMesh& mesh, const std::vector<bool>& turned) {
         std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
         std::swap(mesh.opposite[3 * t], mesh.opposite[3 * t + 2]);
         if (!mesh.uvs.empty()) std::swap(mesh.uvs[3 * t + 1], mesh.uvs[3 * t + 2]);
+        if (mesh.normals.empty()) continue;
+        std::swap(mesh.normals[3 * t + 1], mesh.normals[3 * t + 2]);
+        for (std::size_t c = 3 * std::size_t{t}; c < 3 * std::size_t{t} + 3; ++c) mesh.normals[c] = -mesh.normals[c];
     }
     for (std::uint32_t& o : mesh.opposite)
         if (o != kNone && turned[o / 3]) o = 3 * (o / 3) + 2 - o % 3;

@@ -23,6 +23,7 @@ void check_soup(const PolygonSoup& soup) {
                             : soup.polygon_start.front() == 0 && soup.polygon_start.back() == soup.corners.size()) &&
                        std::is_sorted(soup.polygon_start.begin(), soup.polygon_start.end()) &&
                        (soup.corner_uvs.empty() || soup.corner_uvs.size() == soup.corners.size()) &&
+                       (soup.corner_normals.empty() || soup.corner_normals.size() == soup.corners.size()) &&
                        (soup.point_colours.empty() || soup.point_colours.size() == soup.points.size()) &&
                        (soup.polygon_groups.empty() || soup.polygon_groups.size() == soup.n_polygons()) &&
                        (soup.polygon_parts.empty() || (soup.scene && soup.polygon_parts.size() == soup.n_polygons() &&
@@ -59,6 +60,7 @@ class Repair {
     void make_manifold();
     bool drop_flat();
     void compact();
+    void take_file_normals(std::vector<Vec3f>& normals) const;
     Surface hand_out(const SurfaceTopology& topology);
 
     PolygonSoup soup_;
@@ -166,6 +168,11 @@ void Repair::add_triangle(std::size_t p, std::size_t c0, std::size_t c1, std::si
         mesh_.groups.push_back(soup_.polygon_groups[p]);
     if (!soup_.corner_uvs.empty())
         for (const std::size_t c : {c0, c1, c2}) mesh_.uvs.push_back(soup_.corner_uvs[c]);
+    if (soup_.corner_normals.empty()) return;
+    for (const std::size_t c : {c0, c1, c2}) {
+        const Vec3f& n = soup_.corner_normals[c];
+        mesh_.normals.push_back(options_.y_up ? Vec3f(n.x, -n.z, n.y) : n);
+    }
 }
 
 void Repair::cut_polygon(std::size_t p, EarBudget& budget) {
@@ -203,6 +210,7 @@ void Repair::cut_polygons() {
     soup_.corners = {};
     soup_.polygon_start = {};
     soup_.corner_uvs = {};
+    soup_.corner_normals = {};
     soup_.polygon_groups = {};
     soup_.polygon_parts = {};
 }
@@ -298,11 +306,24 @@ void Repair::compact() {
         for (std::uint32_t& v : t) v = new_index[v];
 }
 
+/// Where the file's surface says them, and not against the triangle.
+void Repair::take_file_normals(std::vector<Vec3f>& normals) const {
+    constexpr double kCosMost = 0.5;
+    for (std::size_t c = 0; c < mesh_.normals.size(); ++c) {
+        const std::array<Vec3, 3> p = points_of(mesh_, c / 3);
+        const Vec3 own = glm::cross(p[1] - p[0], p[2] - p[0]), file(mesh_.normals[c]);
+        const double length = glm::length(file);
+        if (length > 0.5 && glm::dot(own, file) >= kCosMost * length * glm::length(own))
+            normals[c] = Vec3f(file / length);
+    }
+}
+
 Surface Repair::hand_out(const SurfaceTopology& topology) {
     Surface surface;
     TriangleMesh& out = surface.mesh;
     tuft::report(options_.progress, "normals", 0);
     out.corner_normals = topology.corner_normals(options_.crease_angle);
+    take_file_normals(out.corner_normals);
     out.neighbours = topology.neighbours();
     report_.components = topology.n_components();
     report_.border_edges = topology.n_border_edges();

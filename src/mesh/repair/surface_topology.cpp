@@ -181,14 +181,18 @@ bool SurfaceTopology::State::flip_flat(std::size_t t, RawMesh& raw) {
         const auto along = static_cast<float>(glm::dot(p[1] - p[0], side) / glm::dot(side, side));
         uv = {raw.uvs[ca_over], glm::mix(raw.uvs[ca_over], raw.uvs[cc], along), raw.uvs[cc], raw.uvs[cd]};
     }
+    std::array<Vec3f, 4> normal{};
+    if (!raw.normals.empty()) normal = {raw.normals[ca_over], raw.normals[cb], raw.normals[cc], raw.normals[cd]};
     if (!raw.groups.empty()) raw.groups[t] = raw.groups[other];
     mesh.flip(edge);
     for (const std::size_t f : {t, other})
         for (int k = 0; k < 3; ++k) {
             const std::uint32_t at = index(mesh.from_vertex_handle(half_edge(f, k)));
             raw.triangles[f][static_cast<std::size_t>(k)] = at;
-            const auto which = std::find(v.begin(), v.end(), at) - v.begin();
-            if (!raw.uvs.empty()) raw.uvs[3 * f + static_cast<std::size_t>(k)] = uv[static_cast<std::size_t>(which)];
+            const auto which = static_cast<std::size_t>(std::find(v.begin(), v.end(), at) - v.begin());
+            const std::size_t c = 3 * f + static_cast<std::size_t>(k);
+            if (!raw.uvs.empty()) raw.uvs[c] = uv[which];
+            if (!raw.normals.empty()) raw.normals[c] = normal[which];
         }
     return true;
 }

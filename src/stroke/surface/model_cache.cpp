@@ -109,7 +109,7 @@ void get_atlas(CacheReader& entry, atlas::Atlas& a, atlas::AtlasReport& r) {
 }  // namespace
 
 CacheKey model_key(const mesh::PolygonSoup& soup, const ModelOptions& options) {
-    CacheKey key("model 1");
+    CacheKey key("model 2");
     key.add_text(kPreparationCode);
     const BuildFacts& facts = build_facts();
     key.add_text(facts.compiler);
@@ -120,6 +120,7 @@ CacheKey model_key(const mesh::PolygonSoup& soup, const ModelOptions& options) {
     key.add_array(std::span<const std::uint32_t>(soup.corners));
     key.add_array(std::span<const std::uint32_t>(soup.polygon_start));
     key.add_array(std::span<const Vec2f>(soup.corner_uvs));
+    key.add_array(std::span<const Vec3f>(soup.corner_normals));
     key.add_array(std::span<const std::array<std::uint8_t, 4>>(soup.point_colours));
     key.add_array(std::span<const std::uint32_t>(soup.polygon_groups));
     key.add_array(std::span<const std::uint32_t>(soup.polygon_parts));

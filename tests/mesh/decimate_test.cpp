@@ -1,0 +1,123 @@
+#include "mesh/repair/decimate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/error.h"
+#include "mesh_checks.h"
+
+/// Decimated copies, and normals that a file brings along.
+namespace tuft::mesh {
+namespace {
+
+const RepairOptions kMetres{.metres_per_unit = 1};
+
+TEST(Decimate, AClosedSurfaceStaysClosedAndOfItsGenus) {
+    const TriangleMesh full = build_surface(make_torus(120, 60), kMetres).mesh;
+    const PolygonSoup soup = decimate(full, {.n_triangles = 1000});
+    EXPECT_LE(soup.n_polygons(), 1000u);
+    EXPECT_GT(soup.n_polygons(), 900u);
+    const Surface copy = build_surface(soup, kMetres);
+    EXPECT_TRUE(copy.report.closed);
+    EXPECT_TRUE(broken_promises(copy).empty());
+    EXPECT_EQ(2 * copy.mesh.n_vertices(), copy.mesh.n_triangles()) << "Euler: V - E + F = 0 on a torus, E = 3F/2";
+    EXPECT_EQ(copy.report.vertices_welded + copy.report.degenerate_faces_dropped, 0u);
+}
+
+TEST(Decimate, TheVerticesLeftAreVerticesOfTheModel) {
+    const TriangleMesh full = build_surface(make_torus(60, 30), kMetres).mesh;
+    std::set<std::array<float, 3>> known;
+    for (const Vec3f& p : full.positions) known.insert({p.x, p.y, p.z});
+    for (const Vec3& p : decimate(full, {.n_triangles = 500}).points)
+        EXPECT_TRUE(known.contains({float(p.x), float(p.y), float(p.z)}));
+}
+
+TEST(Decimate, AFlatSheetLosesAllThatItsOutlineDoesNotNeed) {
+    const TriangleMesh full = build_surface(make_sheet(40), kMetres).mesh;
+    const PolygonSoup soup = decimate(full, {.error = 1e-6});
+    EXPECT_LE(soup.n_polygons(), 16u);
+    EXPECT_NEAR(surface_area(build_surface(soup, kMetres).mesh), 1600, 1e-3);
+}
+
+TEST(Decimate, GroupsAndUvsEndWhereTheyDid) {
+    PolygonSoup sheet = make_sheet(40);
+    set_uvs_to_position(sheet);
+    sheet.group_names = {"left", "right"};
+    for (std::size_t p = 0; p < sheet.n_polygons(); ++p)
+        sheet.polygon_groups.push_back(sheet.points[sheet.corners[3 * p]].x < 12 ? 0 : 1);
+    const PolygonSoup soup = decimate(build_surface(sheet, kMetres).mesh, {.error = 1e-6});
+    EXPECT_LT(soup.n_polygons(), 60u);
+    const TriangleMesh copy = build_surface(soup, kMetres).mesh;
+    double left = 0;
+    for (std::size_t t = 0; t < copy.n_triangles(); ++t) {
+        const Vec3 a = copy.position(t, 0), b = copy.position(t, 1), c = copy.position(t, 2);
+        if (copy.triangle_groups[t] == 0) left += 0.5 * glm::length(glm::cross(b - a, c - a));
+        for (int k = 0; k < 3; ++k) {
+            const Vec2f uv = copy.corner_uvs[3 * t + static_cast<std::size_t>(k)];
+            EXPECT_EQ(Vec2f(copy.position(t, k)), uv);
+        }
+    }
+    EXPECT_NEAR(left, 12 * 40, 1e-3);
+}
+
+TEST(Decimate, SameMeshSameBitsAndNoLimitIsRefused) {
+    const TriangleMesh full = build_surface(make_torus(60, 30), kMetres).mesh;
+    const PolygonSoup a = decimate(full, {.n_triangles = 500}), b = decimate(full, {.n_triangles = 500});
+    EXPECT_EQ(a.points, b.points);
+    EXPECT_EQ(a.corners, b.corners);
+    EXPECT_THROW(decimate(full, {}), Error);
+}
+
+/// A box whose corners all have normals that lean by `lean` from those of its faces, away from the middle.
+PolygonSoup leaning_box(double lean) {
+    PolygonSoup box = make_box(Vec3(-0.5));
+    for (std::size_t p = 0; p < box.n_polygons(); ++p) {
+        const auto corner = [&](std::size_t k) { return box.points[box.corners[4 * p + k]]; };
+        const Vec3 face = glm::normalize(glm::cross(corner(1) - corner(0), corner(2) - corner(0)));
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Vec3 out = glm::normalize(corner(k) - glm::dot(corner(k), face) * face);
+            box.corner_normals.emplace_back(std::cos(lean) * face + std::sin(lean) * out);
+        }
+    }
+    return box;
+}
+
+/// The greatest angle between a corner's normal and that of its triangle.
+double greatest_lean(const TriangleMesh& m) {
+    double most = 0;
+    for (std::size_t c = 0; c < m.corner_normals.size(); ++c)
+        most = std::max(most, std::acos(std::min(1.0, glm::dot(Vec3(m.corner_normals[c]), face_normal(m, c / 3)))));
+    return most;
+}
+
+TEST(FileNormals, AreKeptThroughTriangulationTurningAndYUp) {
+    const double lean = 0.5;
+    // Floats under acos: 1e-6 of an angle of 0.5.
+    EXPECT_NEAR(greatest_lean(build_surface(leaning_box(lean), kMetres).mesh), lean, 1e-5);
+    RepairOptions y_up = kMetres;
+    y_up.y_up = true;
+    EXPECT_NEAR(greatest_lean(build_surface(leaning_box(lean), y_up).mesh), lean, 1e-5);
+    PolygonSoup inside_out = leaning_box(lean);
+    for (std::size_t p = 0; p < inside_out.n_polygons(); ++p) {
+        std::reverse(inside_out.corners.begin() + 4 * static_cast<std::ptrdiff_t>(p),
+                     inside_out.corners.begin() + 4 * static_cast<std::ptrdiff_t>(p) + 4);
+        std::reverse(inside_out.corner_normals.begin() + 4 * static_cast<std::ptrdiff_t>(p),
+                     inside_out.corner_normals.begin() + 4 * static_cast<std::ptrdiff_t>(p) + 4);
+    }
+    for (Vec3f& n : inside_out.corner_normals) n = -n;
+    EXPECT_NEAR(greatest_lean(build_surface(inside_out, kMetres).mesh), lean, 1e-5);
+}
+
+TEST(FileNormals, ThatAreNoneOrAgainstTheirTriangleGiveWay) {
+    PolygonSoup box = leaning_box(1.2);  // 69 degrees
+    box.corner_normals[0] = Vec3f(NAN);
+    EXPECT_NEAR(greatest_lean(build_surface(box, kMetres).mesh), 0, 1e-3);
+    box.corner_normals.pop_back();
+    EXPECT_THROW(build_surface(box, kMetres), Error);
+}
+
+}  // namespace
+}  // namespace tuft::mesh
