@@ -52,5 +52,8 @@ CLI::App* add_device(CLI::App& app, DeviceWork& device);
 CLI::App* add_decals(CLI::App& app, Decals& decals);
 /// Adds `tuft trajectory`.
 CLI::App* add_trajectory(CLI::App& app, TrajectoryWork& work);
+/// Add `tuft variants` and `tuft run-task`.
+CLI::App* add_variants(CLI::App& app, VariantsWork& work);
+CLI::App* add_run_task(CLI::App& app, RunTask& work);
 
 }  // namespace tuft::cli

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string_view>
+
+#include "render/brush/brush_canvas.h"
+
+/// \file
+/// Names in pictures, in the strokes of decal/stroke_font.h.
+namespace tuft::variants {
+
+struct LetteringOptions {
+    double size = 11;    ///< pixels, height of a capital
+    double width = 1e9;  ///< pixels; a longer text is made narrower down to 60 %, then cut
+    Vec3 colour{0.1};    ///< linear
+};
+
+/// Draws a text; `at` is the left end of its base line, pixels.
+void letter(render::BrushCanvas& canvas, std::string_view text, const Vec2& at, const LetteringOptions& options = {});
+
+}  // namespace tuft::variants
