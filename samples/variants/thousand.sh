@@ -24,8 +24,9 @@ brushes = ["wolf-small", "mixed-small"]
 side = "top"
 width_mm = 25
 [picture]
-width = 48
-height = 36
+of = "planned"
+width = 64
+height = 48
 [[tolerance]]
 name = "jig"
 samples = 62
@@ -41,8 +42,7 @@ END
 table() { python3 -c 'import csv, sys
 for row in csv.reader(open(sys.argv[1])): print([v for i, v in enumerate(row) if i != 17])' "$1/table.csv"; }
 for n in 1 4; do
-  "$tuft" variants "$out/plan.toml" -o "$out/by-$n" --run --quiet --threads "$n"
-  table "$out/by-$n" >"$out/by-$n.txt"
+  "$tuft" variants "$out/plan.toml" -o "$out/by-$n" --run --quiet --threads "$n" &
 done
 "$tuft" variants "$out/plan.toml" -o "$out/killed" --quiet
 kills=0
@@ -58,7 +58,8 @@ for run in 1 2 3; do
   [ $run = 3 ] || kill -KILL $parent 2>/dev/null || true
   wait $parent 2>/dev/null || true
 done
-table "$out/killed" >"$out/killed.txt"
+wait
+for run in by-1 by-4 killed; do table "$out/$run" >"$out/$run.txt"; done
 echo "$(grep -c done "$out/by-1.txt") variants done by 1 worker; killed: $kills workers and 2 starters"
 cmp "$out/by-1.txt" "$out/by-4.txt" && echo "1 and 4 workers: the same table"
 cmp "$out/by-1.txt" "$out/killed.txt" && echo "killed and resumed: the same table"

@@ -11,6 +11,7 @@
 #include "core/system/memory.h"
 #include "core/system/parallel.h"
 #include "core/text/counted.h"
+#include "core/text/units.h"
 #include "variants/deviation.h"
 #include "variants/gather.h"
 #include "variants/scripts.h"
@@ -94,6 +95,18 @@ void count_strokes(variants::Figures& f, const stroke::JournalEntry& entry, cons
     if (!report.touched() || (i < off.size() && off[i])) ++f.misfits;
 }
 
+/// Looks at the middle of the drawing.
+void look_closer(View& view, double zoom, const std::vector<stroke::JournalEntry>& strokes,
+                 const stroke::Model& model) {
+    Box box;
+    std::vector<bool> off;
+    for (const Vec3f& foot : variants::feet_of(strokes, model, off)) box.add(Vec3(foot));
+    if (box.empty()) return;
+    const Vec3 middle = box.centre() / kMillimetre;
+    view.target_mm = {middle.x, middle.y, middle.z};
+    view.zoom = zoom;
+}
+
 variants::Outcome TaskPainter::paint(const variants::Task& task) {
     const auto start = Clock::now();
     Paint a = arguments_of(task);
@@ -101,6 +114,7 @@ variants::Outcome TaskPainter::paint(const variants::Task& task) {
     const stroke::Model& model = model_of(task);
     place_strokes(strokes, model, a, console_);
     if (!a.view.directed) look_at_strokes(a.view, strokes, model);
+    if (task.picture.zoom > 1) look_closer(a.view, task.picture.zoom, strokes, model);
     if (task.sample > 0) variants::deviate(strokes, task.tolerance, task.seed);
     stroke::Document painting(model, {.substrate = a.surface.substrate});
     prepare_strokes(strokes, painting, a, console_);
@@ -123,7 +137,8 @@ variants::Outcome TaskPainter::paint(const variants::Task& task) {
     f.ink_area_mm2 = area * 1e6;
     f.view_deg = {a.view.azimuth, a.view.elevation};
     f.substrate = a.surface.substrate;
-    out.picture = draw_picture({.model = model, .painting = &painting, .view = a.view}, console_);
+    if (task.picture.has(task.sample))
+        out.picture = draw_picture({.model = model, .painting = &painting, .view = a.view}, console_);
     f.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     return out;
 }

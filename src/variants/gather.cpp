@@ -16,7 +16,7 @@ namespace tuft::variants {
 namespace {
 
 constexpr std::size_t kMostOnSheet = 60;
-constexpr int kMargin = 10, kLettering = 26;  // pixels round a picture, and under it for its name
+constexpr int kMargin = 10, kLettering = 40;  // pixels round a picture, and under it for its name
 constexpr std::size_t kMostPixels = std::size_t{kLargestPicture} * std::size_t{kLargestPicture};
 
 std::string word_of(State state) {
@@ -42,6 +42,16 @@ void put_picture(render::BrushCanvas& sheet, const io::Image8& picture, const Ve
             }
 }
 
+/// Number and name of a variant in two lines; `at` is the lower left corner of its picture.
+void name_picture(render::BrushCanvas& sheet, const Row& row, const Vec2& at, int width) {
+    const LetteringOptions options{.size = 11, .width = width - 4.0};
+    const std::string text = fmt::format("{} {}", row.index, row.task.name);
+    const std::string_view first = first_line(text, options);
+    letter(sheet, first, at + Vec2(0, 17), options);
+    if (first.size() < text.size())
+        letter(sheet, std::string_view(text).substr(first.size() + 1), at + Vec2(0, 33), options);
+}
+
 void write_sheet(const Jobs& jobs, const std::vector<const Row*>& rows, const fs::path& file) {
     int width = 1, height = 1;
     for (const Row* row : rows) {
@@ -56,8 +66,7 @@ void write_sheet(const Jobs& jobs, const std::vector<const Row*>& rows, const fs
     for (int i = 0; i < n; ++i) {
         const Vec2 corner(kMargin + (i % columns) * dx, kMargin + (i / columns) * dy);
         put_picture(sheet, io::read_image8(jobs.picture(rows[i]->index), kMostPixels), corner);
-        letter(sheet, fmt::format("{}  {}", rows[i]->index, rows[i]->task.name), corner + Vec2(2, height + 18),
-               {.size = 11, .width = width - 4.0});
+        name_picture(sheet, *rows[i], corner + Vec2(2, height), width);
     }
     io::write_image(file, io::view_of(sheet.width, sheet.height, 3, render::to_srgb(sheet).data()));
 }
@@ -133,7 +142,7 @@ std::string json_of(const Jobs& jobs, const std::vector<Row>& rows) {
 std::vector<fs::path> write_contact_sheets(const Jobs& jobs, const std::vector<Row>& rows, const ProgressFn& progress) {
     std::vector<const Row*> done;
     for (const Row& row : rows)
-        if (row.state == State::done) done.push_back(&row);
+        if (row.state == State::done && jobs.has_picture(row.index)) done.push_back(&row);
     const std::size_t n = (done.size() + kMostOnSheet - 1) / kMostOnSheet;
     std::vector<fs::path> files;
     for (std::size_t s = 0; s < n; ++s) {

@@ -25,8 +25,8 @@ std::vector<Row> gather(const Jobs& jobs);
 std::string csv_of(const Jobs& jobs, const std::vector<Row>& rows);
 std::string json_of(const Jobs& jobs, const std::vector<Row>& rows);
 
-/// Writes the pictures of all done variants with their names, up to 60 a sheet: contact-sheet-01.png, … Returns the
-/// files. Throws `Error` for pictures that cannot be read.
+/// Writes the pictures that there are of done variants with their names, up to 60 a sheet: contact-sheet-01.png, …
+/// Returns the files. Throws `Error` for pictures that cannot be read.
 std::vector<std::filesystem::path> write_contact_sheets(const Jobs& jobs, const std::vector<Row>& rows,
                                                         const ProgressFn& progress = {});
 

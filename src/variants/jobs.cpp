@@ -127,10 +127,12 @@ void Jobs::store(std::size_t i, const Outcome& outcome) const {
     const Unfinished unfinished(beside);
     const std::vector<char> coverage = bytes_of(outcome.coverage);
     write_file(beside / kCoverage, coverage.data(), coverage.size());
-    const render::Image& image = outcome.picture;
-    io::write_image(beside / kPicture, io::view_of(image.width, image.height, 3, image.rgb.data()));
     nlohmann::json j = outcome.figures;
-    for (const char* file : {kCoverage, kPicture}) j["files"][file] = content_hash(beside / file);
+    j["files"][kCoverage] = content_hash(beside / kCoverage);
+    if (const render::Image& image = outcome.picture; image.width > 0) {
+        io::write_image(beside / kPicture, io::view_of(image.width, image.height, 3, image.rgb.data()));
+        j["files"][kPicture] = content_hash(beside / kPicture);
+    }
     write_text(beside / kResult, j.dump(1) + "\n");
     if (::rename(beside.c_str(), place.c_str()) != 0) {
         const int fault = errno;
@@ -176,12 +178,16 @@ Coverage Jobs::coverage(std::size_t i) const {
     return coverage_of_bytes(checked_file(i, kCoverage), (result_folder(i) / kCoverage).string());
 }
 
+bool Jobs::has_picture(std::size_t i) const {
+    return json_of_file(result_folder(i) / kResult).value("files", nlohmann::json::object()).contains(kPicture);
+}
+
 bool Jobs::remove_damaged(std::size_t i) const {
     if (state(i) != State::done) return false;
     try {
         figures(i);
         coverage(i);
-        checked_file(i, kPicture);
+        if (has_picture(i)) checked_file(i, kPicture);
         return false;
     } catch (const Error&) {
     } catch (const nlohmann::json::exception&) {

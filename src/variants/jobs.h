@@ -62,6 +62,7 @@ class Jobs {
     /// Return what `store` wrote. Throw `Error` where it is damaged: files are checked against their hashes.
     Figures figures(std::size_t i) const;
     Coverage coverage(std::size_t i) const;
+    bool has_picture(std::size_t i) const;
     std::filesystem::path picture(std::size_t i) const;
     /// Removes a damaged result, so that its task is open again. Returns whether there was one.
     bool remove_damaged(std::size_t i) const;

@@ -8,9 +8,19 @@
 namespace tuft::variants {
 namespace {
 
-constexpr double kNarrowest = 0.6, kThickness = 0.11;  // of the width, of the size
+constexpr double kNarrowest = 0.6, kThickness = 0.13;  // of the width, of the size
 
 }  // namespace
+
+std::string_view first_line(std::string_view text, const LetteringOptions& options) {
+    std::size_t end = text.size();
+    while (kNarrowest * decal::text_width(text.substr(0, end), options.size) > options.width) {
+        const std::size_t space = text.substr(0, end).rfind(' ');
+        if (space == std::string_view::npos || space == 0) break;
+        end = space;
+    }
+    return text.substr(0, end);
+}
 
 void letter(render::BrushCanvas& canvas, std::string_view text, const Vec2& at, const LetteringOptions& options) {
     while (text.size() > 1 && kNarrowest * decal::text_width(text, options.size) > options.width) text.remove_suffix(1);

@@ -14,6 +14,7 @@ namespace tuft::variants {
 namespace {
 
 constexpr int kTicks = 5;
+constexpr double kAround = 2.2;  // width of the picture over the diagonal of what is looked at
 constexpr double kBarWidth = 18, kBarHeight = 260, kRight = 120, kTop = 90;  // pixels
 
 /// Colours of a scale from its lowest value to its highest (YlOrBr of ColorBrewer, its dark end drawn out to violet),
@@ -86,6 +87,11 @@ render::Image draw_map(const stroke::Model& model, const MapPicture& picture, co
     options.height = picture.height;
     options.view.azimuth = picture.view_deg[0] * kDegree;
     options.view.elevation = picture.view_deg[1] * kDegree;
+    if (!picture.around.empty()) {
+        options.view.target = picture.around.centre();
+        options.view.width_at_target =
+            std::min(kAround * picture.around.diagonal(), 1.3 * model.mesh->bounds.diagonal());
+    }
     options.progress = progress;
     render::Image image = render::render_picture(*model.mesh, *model.query, appearance, options);
     render::BrushCanvas canvas(image.width, image.height, Vec3(0));

@@ -158,8 +158,10 @@ void read_painting(const Value& v, PaintingChoice& p) {
 void read_picture(const Value& v, PictureChoice& p) {
     const auto side = [](const Value& x) { return static_cast<int>(x.whole(16, kLargestPicture)); };
     read_table(v.table(), v.source,
-               {{"width", [&](const Value& x) { p.width = side(x); }},
+               {{"of", [&](const Value& x) { p.of = x.text(); }},
+                {"width", [&](const Value& x) { p.width = side(x); }},
                 {"height", [&](const Value& x) { p.height = side(x); }},
+                {"zoom", [&](const Value& x) { p.zoom = x.number(); }},
                 {"view_deg", [&](const Value& x) { p.view_deg = x.numbers(2); }}});
 }
 

@@ -48,7 +48,7 @@ struct Coverage {
 struct Outcome {
     Figures figures;
     Coverage coverage;
-    render::Image picture;
+    render::Image picture;  ///< 0 × 0: none
 };
 
 /// Returns the painted texels of all layers, and their area in m² in `area`.

@@ -25,7 +25,7 @@ namespace tuft::variants {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ModelChoice, file, unit, up, atlas_size)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PlacementChoice, at_mm, side, width_mm, turn_deg, mapping)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Tolerance, name, shift_mm, turn_deg, scale, hand_mm, hand_length_mm, pressure)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PictureChoice, width, height, view_deg)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PictureChoice, of, width, height, view_deg, zoom)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PaintingChoice, substrate, film, dip, fit_brush)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Task, name, model, strokes, ink, brush, painting, placement, tolerance, sample, seed,
                                    picture, program, contents)
@@ -113,6 +113,8 @@ void check_task(const Task& task, const std::string& source) {
     check.number("sample", task.sample, 0, kMostSamples);
     check.number("width", task.picture.width, 16, kLargestPicture);
     check.number("height", task.picture.height, 16, kLargestPicture);
+    check.word("of", task.picture.of, {"all", "planned", "none"});
+    check.number("zoom", task.picture.zoom, 1, 100);
     if (!task.picture.view_deg.empty() && task.picture.view_deg.size() != 2)
         throw Error(source, "'view_deg' must be azimuth and elevation");
     for (const double v : task.picture.view_deg) check.number("view_deg", v, -360, 360);

@@ -50,8 +50,13 @@ struct Tolerance {
 };
 
 struct PictureChoice {
+    std::string of = "all";          ///< all, planned (those without deviation), none
     int width = 320, height = 240;   ///< pixels
     std::vector<double> view_deg{};  ///< [2] azimuth and elevation; empty: the side that the strokes are on
+    double zoom = 1;                 ///< 1: the whole model; else that many times as large, about the drawing
+
+    /// Whether the picture of this sample is drawn.
+    bool has(int sample) const { return of == "all" || (of == "planned" && sample == 0); }
 
     bool operator==(const PictureChoice&) const = default;
 };

@@ -115,6 +115,12 @@ MoveFigures ToleranceMap::figures() const {
     return f;
 }
 
+Box ToleranceMap::box() const {
+    Box box;
+    for (const Vec3f& foot : planned_.feet) box.add(Vec3(foot));
+    return box;
+}
+
 std::vector<float> ToleranceMap::probability() const {
     std::vector<float> out(count_.size());
     const float n = static_cast<float>(std::max<std::size_t>(n_, 1));

@@ -35,6 +35,9 @@ class ToleranceMap {
 
     MoveFigures figures() const;
 
+    /// Returns the box of the places of the drawing, as planned.
+    Box box() const;
+
     /// Part of the samples in which each texel is painted, [256 n_slots].
     std::vector<float> probability() const;
     /// Root mean square displacement of the place of the drawing that is nearest to each texel, metres, [256 n_slots];
@@ -61,6 +64,7 @@ struct MapPicture {
     std::vector<float> values;       ///< [256 n_slots] on that scale; NaN: bare
     Vec3f body{0.8f};                ///< linear colour of the bare model
     std::vector<double> view_deg;    ///< [2] azimuth and elevation
+    Box around;                      ///< metres, to look at; empty: the whole model
     int width = 1200, height = 900;  ///< pixels
 };
 

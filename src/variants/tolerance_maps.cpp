@@ -86,6 +86,7 @@ MapRow draw_group(const Jobs& jobs, const Group& group, std::size_t number, cons
     MapPicture picture;
     picture.body = body_of(group.planned->figures.substrate);
     picture.view_deg = group.planned->figures.view_deg;
+    picture.around = map.box();
     const std::vector<float> probability = map.probability();
     picture.values = only_where(probability, probability, 100);
     picture.unit = "%";

@@ -29,7 +29,7 @@ class Variants : public Program {
               "[[tolerance]]\nname = 'jig'\nsamples = " +
                   std::to_string(samples) +
                   "\nshift_mm = 1\nturn_deg = 2\nhand_mm = 0.2\npressure = 0.1\n"
-                  "[picture]\nwidth = 32\nheight = 24\n");
+                  "[picture]\nof = 'planned'\nwidth = 32\nheight = 24\n");
     }
     std::string in_folder(const std::string& name) const { return "'" + path(name) + "'"; }
     Ran lay_out(const std::string& jobs) const {
@@ -38,7 +38,8 @@ class Variants : public Program {
     /// All of the table but the times.
     std::map<std::size_t, nlohmann::json> table(const std::string& jobs) const {
         std::map<std::size_t, nlohmann::json> rows;
-        for (nlohmann::json row : nlohmann::json::parse(read(path(jobs + "/table.json")))["variants"]) {
+        const nlohmann::json table = nlohmann::json::parse(read(path(jobs + "/table.json")));
+        for (nlohmann::json row : table["variants"]) {
             row.erase("seconds");
             const auto index = row["task"].get<std::size_t>();
             EXPECT_FALSE(rows.contains(index)) << "twice: " << index;
@@ -127,6 +128,7 @@ TEST_F(Variants, KilledAtAnyTimeNoneIsLostOrDouble) {
         if (tuft("variants " + in_folder("killed") + " --run --quiet --threads 2").status == 0) break;
     }
     EXPECT_THAT(left_over("killed", 30), testing::IsEmpty());
+    EXPECT_EQ(table("killed").size(), 30u);
     EXPECT_EQ(table("killed"), table("whole"));
 }
 
@@ -202,6 +204,7 @@ TEST_F(Variants, AnArrayJobOfSlurmPaintsThemAll) {
     EXPECT_EQ(ran.status, 0) << ran.err;
     run("/bin/bash", "'" + script + "' stop " + in_folder("slurm"));
     EXPECT_EQ(tuft("variants " + in_folder("jobs") + " --gather").status, 0);
+    EXPECT_EQ(table("jobs").size(), 8u);
     EXPECT_EQ(table("jobs"), table("local"));
     std::this_thread::sleep_for(500ms);  // for what its daemons still write
 }

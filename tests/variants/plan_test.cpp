@@ -57,9 +57,11 @@ width_mm = 40
 turn_deg = -5
 mapping = "wrap"
 [picture]
+of = "planned"
 width = 100
 height = 80
 view_deg = [30, 20]
+zoom = 2
 [[tolerance]]
 name = "jig"
 samples = 3
@@ -138,6 +140,7 @@ TEST_F(PlanFolder, HostilePlansGetOneLine) {
         {good + "[placement]\nside = 'west'", "there is no side 'west'"},
         {good + "[placement]\nside = 'front'\nat_mm = [0, 0, 0]", "has both"},
         {good + "[picture]\nwidth = 100000", "whole number from 16 to 2048"},
+        {good + "[picture]\nof = 'some'", "'of' must be one of all, planned, none"},
         {good + "[painting]\nfilm = 'oil'", "'film' must be one of"},
         {good + "name = ", "plan.toml:3"},
         {"models = " + std::string(50'000, '[') + std::string(50'000, ']'), "plan.toml"}};
