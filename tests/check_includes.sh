@@ -45,6 +45,7 @@ io/sheet
 writer/glyphs
 writer/gesture
 writer/fit writer/layout
+variants
 cli app/input app/text
 app/view
 app/document

@@ -319,6 +319,13 @@ CLI::App* add_bench(CLI::App& app, Bench& bench) {
         ->check(number_in(1, kMostTexels, "POSITIVE"));
     command->add_option("--isa", bench.isa, "instruction set of the stamps: best, avx512, avx2, baseline")
         ->check(CLI::IsMember({"best", "avx512", "avx2", "baseline"}));
+    auto* report = command->add_option("--report", bench.report,
+                                       "write a page of figures with plots (.html or .md), and its numbers as .json "
+                                       "beside it; also measures how speed goes with threads, triangles and texels");
+    command
+        ->add_option("--against", bench.against,
+                     "numbers of an earlier report (.json) to compare with (default: those that the page replaces)")
+        ->needs(report);
     add_store(command, bench.surface);
     add_common(command, bench.common);
     return command;
@@ -340,12 +347,13 @@ Entry make_entry(CLI::App& app, CLI::App* (*add)(CLI::App&, T&)) {
 /// Adds all commands, in the order of --help.
 std::vector<Entry> add_commands(CLI::App& app) {
     return {
-        make_entry(app, add_paint),  make_entry(app, add_write),      make_entry(app, add_inspect),
-        make_entry(app, add_unwrap), make_entry(app, add_decimate), make_entry(app, add_replay),     make_entry(app, add_export),
-        make_entry(app, add_decals), make_entry(app, add_trajectory), make_entry(app, add_layer),
-        make_entry(app, add_fill),   make_entry(app, add_mask),       make_entry(app, add_render),
-        make_entry(app, add_film),   make_entry(app, add_brush),      make_entry(app, add_bias),
-        make_entry(app, add_ink),    make_entry(app, add_bench),      make_entry(app, add_device),
+        make_entry(app, add_paint),      make_entry(app, add_write),    make_entry(app, add_inspect),
+        make_entry(app, add_unwrap),     make_entry(app, add_decimate), make_entry(app, add_replay),
+        make_entry(app, add_export),     make_entry(app, add_decals),   make_entry(app, add_trajectory),
+        make_entry(app, add_variants),   make_entry(app, add_run_task), make_entry(app, add_layer),
+        make_entry(app, add_fill),       make_entry(app, add_mask),     make_entry(app, add_render),
+        make_entry(app, add_film),       make_entry(app, add_brush),    make_entry(app, add_bias),
+        make_entry(app, add_ink),        make_entry(app, add_bench),    make_entry(app, add_device),
     };
 }
 

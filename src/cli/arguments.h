@@ -251,8 +251,10 @@ struct InkWork {
 struct Bench {
     std::filesystem::path model;  ///< empty: models that the benchmark generates
     bool quick = false;
-    Surface surface;           ///< size 0: 4096, or 2048 when quick
-    std::string isa = "best";  ///< best | avx512 | avx2 | baseline
+    Surface surface;                ///< size 0: 4096, or 2048 when quick
+    std::string isa = "best";       ///< best | avx512 | avx2 | baseline
+    std::filesystem::path report;   ///< page to write, .html or .md; its figures go beside it as .json
+    std::filesystem::path against;  ///< figures of an earlier report (.json); empty: those beside `report`
     Common common;
 };
 
@@ -319,8 +321,26 @@ struct TrajectoryWork {
     Common common;
 };
 
-using Command = std::variant<Paint, Write, Inspect, Unwrap, Decimate, Replay, Export, Render, Brush, BiasCorrection, Bench,
-                             LayerWork, FillWork, MaskWork, InkWork, DeviceWork, Decals, TrajectoryWork, Film>;
+/// `tuft variants PLAN`
+struct VariantsWork {
+    std::filesystem::path plan;    ///< .toml file, or a folder of tasks
+    std::filesystem::path output;  ///< folder of the tasks, of a plan
+    bool run = false, gather = false;
+    Common common;  ///< threads: workers
+};
+
+/// `tuft run-task FOLDER INDEX`
+struct RunTask {
+    std::filesystem::path folder;
+    int index = -1;  ///< < 0: none
+    int count = 1;
+    bool rest = false;  ///< all open tasks that no other process has
+    Common common;
+};
+
+using Command = std::variant<Paint, Write, Inspect, Unwrap, Decimate, Replay, Export, Render, Brush, BiasCorrection,
+                             Bench, LayerWork, FillWork, MaskWork, InkWork, DeviceWork, Decals, TrajectoryWork, Film,
+                             VariantsWork, RunTask>;
 
 /// Parses the command line into `command`. Returns false, with the exit status in `status`, when there is nothing to
 /// run: after printing help or version (0), and after one line on standard error for a wrong command line (2). Main

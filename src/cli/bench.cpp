@@ -1,246 +1,29 @@
 #include <fmt/format.h>
-#include <time.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "brush/tuft/tuft.h"
 #include "cli/bench_film.h"
+#include "cli/bench_report.h"
+#include "cli/bench_strokes.h"
 #include "cli/commands.h"
 #include "cli/steps.h"
 #include "core/system/parallel.h"
 #include "ink/composite/composite.h"
-#include "ink/exchange/deposit.h"
 #include "io/model/read_model.h"
-#include "stroke/document/document.h"
 
 /// Speed on this machine: one thread, CPU time, medians over repeats.
 namespace tuft::cli {
 namespace {
 
-using std::numbers::pi;
-
-double cpu_seconds() {
-    timespec t{};
-    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double wall_seconds() {
-    timespec t{};
-    ::clock_gettime(CLOCK_MONOTONIC, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 footprint::Isa isa_of(const std::string& name) {
     if (name == "baseline") return footprint::Isa::baseline;
     if (name == "avx2") return footprint::Isa::avx2;
     return name == "avx512" ? footprint::Isa::avx512 : footprint::best_isa();
-}
-
-double quantile(std::vector<double> values, double q) {
-    std::sort(values.begin(), values.end());
-    const auto i = static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5);
-    return values.empty() ? 0 : values[i];
-}
-
-// A sphere of 50 mm with rings of equal height; 4 n² triangles.
-mesh::PolygonSoup sphere(int n) {
-    mesh::PolygonSoup soup;
-    const int rings = n, columns = 2 * n;
-    for (int j = 0; j <= rings; ++j)
-        for (int i = 0; i < columns; ++i) {
-            const double theta = pi * j / rings, phi = 2 * pi * i / columns;
-            soup.points.push_back(
-                50.0 * Vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)));
-        }
-    soup.polygon_start.push_back(0);
-    const auto at = [&](int j, int i) { return static_cast<std::uint32_t>(j * columns + i % columns); };
-    for (int j = 0; j < rings; ++j)
-        for (int i = 0; i < columns; ++i) {
-            for (const std::uint32_t v : {at(j, i), at(j + 1, i), at(j + 1, i + 1)}) soup.corners.push_back(v);
-            soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
-            for (const std::uint32_t v : {at(j, i), at(j + 1, i + 1), at(j, i + 1)}) soup.corners.push_back(v);
-            soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
-        }
-    return soup;
-}
-
-// Metres that a unit of the model counts for, so that its surface is as large as that of a sphere of
-// 50 mm: texels are about as large on every model then, and so are the brushes, whatever the model's size.
-double metres_per_unit(const mesh::PolygonSoup& soup) {
-    double area = 0;
-    for (std::size_t p = 0; p < soup.n_polygons(); ++p) {
-        const auto corner = [&](std::uint32_t c) { return soup.points[soup.corners[soup.polygon_start[p] + c]]; };
-        const std::uint32_t n = soup.polygon_start[p + 1] - soup.polygon_start[p];
-        for (std::uint32_t c = 2; c < n; ++c)
-            area += 0.5 * glm::length(glm::cross(corner(c - 1) - corner(0), corner(c) - corner(0)));
-    }
-    const double of_sphere = 4 * pi * 0.05 * 0.05;
-    return area > 0 && std::isfinite(area) ? std::sqrt(of_sphere / area) : kMillimetre;
-}
-
-// A place on the surface and the path that is taken there, along `frame.t`.
-struct Step {
-    Frame frame;
-    std::uint32_t triangle;
-};
-
-// Places a texel apart, straight on over the surface from one side of it; left at an edge.
-std::vector<Step> path_over(const stroke::Model& model, int n) {
-    const Box& box = model.mesh->bounds;
-    const Vec3 out{std::cos(0.3), std::sin(0.3), 0};
-    const auto hit = model.query->ray(box.centre() + box.diagonal() * out, -glm::normalize(out));
-    auto at = hit ? hit : model.query->closest_point(box.centre() + box.diagonal() * out);
-    const double texel = model.atlas.texel_size;
-    std::vector<Step> path{{make_frame(at->position, at->normal, {-out.y, out.x, 0.0}), at->triangle}};
-    while (static_cast<int>(path.size()) < n) {
-        const Frame& here = path.back().frame;
-        at = model.query->closest_point(here.origin + texel * here.t);
-        Vec3 heading = parallel_transport(here.t, here.n, at->normal);
-        if (glm::length(at->position - here.origin) < 0.5 * texel) heading = glm::cross(at->normal, heading);
-        path.push_back({make_frame(at->position, at->normal, heading), at->triangle});
-    }
-    return path;
-}
-
-// A disc of `texels` across with a soft rim.
-footprint::Footprint disc(const stroke::Model& model, int texels, const Step& at) {
-    footprint::Footprint f;
-    const double texel = model.atlas.texel_size;
-    f.frame = at.frame;
-    f.triangle = at.triangle;
-    f.cell = texel;
-    f.width = f.height = texels + 4;
-    f.lo = Vec2(-0.5 * f.width * texel);
-    f.radius = 0.5 * (texels + 1) * texel;
-    f.coverage.resize(static_cast<std::size_t>(f.width) * f.height);
-    for (int j = 0; j < f.height; ++j)
-        for (int i = 0; i < f.width; ++i) {
-            const double r = std::hypot(i + 0.5 - 0.5 * f.width, j + 0.5 - 0.5 * f.height);
-            f.coverage[static_cast<std::size_t>(j) * f.width + i] =
-                static_cast<std::uint8_t>(255 * std::clamp(0.5 + 0.5 * texels - r, 0.0, 1.0));
-        }
-    return f;
-}
-
-// Deposit alone: planning, evaluating and inking one stamp after the other along the path.
-double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps, footprint::Isa isa,
-                              std::span<const char* const> inks) {
-    ink::Canvas canvas(model.texels.n_slots());
-    ink::DepositParams params;
-    for (const char* name : inks) {  // in equal parts
-        const ink::Ink ink = ink::load_ink(name);
-        const ink::Mix mix = ink::mix_of(canvas, ink);
-        const auto part = 1 / static_cast<float>(inks.size());
-        for (std::size_t p = 0; p < mix.size(); ++p) params.mix[p] += part * mix[p];
-        params.extinction += part * ink::extinction_of(ink);
-    }
-    const footprint::StampOptions options{.isa = isa};
-    footprint::PlanScratch scratch;
-    const footprint::Surface surface = model.surface();
-    alignas(64) std::array<float, atlas::kTileTexels> exposure;
-    footprint::Unpacked unpacked;
-    std::vector<footprint::Footprint> path;
-    for (const Step& at : path_over(model, stamps)) path.push_back(disc(model, texels, at));
-    std::vector<double> runs;
-    footprint::StampJobs jobs;
-    for (int repeat = 0; repeat < 7; ++repeat) {
-        bool piecewise = false;
-        const double start = cpu_seconds();
-        for (const footprint::Footprint& f : path) {
-            jobs = footprint::plan_stamp(surface, f, {}, options, scratch, std::move(jobs));
-            piecewise = footprint::choose_mode(jobs, piecewise, options);
-            const ink::DepositLaw law = ink::deposit_law(params, model.atlas.texel_size);
-            for (const footprint::TileJob& job : jobs.tiles) {
-                const atlas::TexelTile& tile = model.texels.tiles[job.slot];
-                if (footprint::evaluate_tile(model.texels, jobs, job, unpacked, exposure))
-                    ink::deposit(canvas, job.slot, exposure, tile.area, params, law);
-            }
-        }
-        runs.push_back((cpu_seconds() - start) / stamps * 1e6);
-    }
-    return quantile(runs, 0.5);
-}
-
-double footprint_texels(int texels) {
-    return pi / 4 * texels * texels;
-}
-
-// The whole path: a brush as thick as makes lines of about `texels` across, dragged along
-// the path; hand samples at 1 kHz and a stamp per texel.
-stroke::PaintStroke drag(const stroke::Model& model, stroke::Document& painting, int texels,
-                         const char* brush = "mixed-medium") {
-    brush::Preset preset = brush::load_preset(brush);
-    const double scale = texels * model.atlas.texel_size / brush::tuft_width(preset);
-    preset.name = "bench";
-    preset.length *= scale;
-    preset.radius *= scale;
-    preset.width *= scale;
-    preset.stiffness *= std::pow(scale, 4);
-    preset.capacity = 1e-4;
-    painting.use(preset);
-    stroke::PaintStroke s;
-    s.trace.flat = false;
-    s.brush = "bench";
-    s.ink = "carbon";
-    const std::vector<Step> path = path_over(model, 401);
-    const int reach = texels / 2;
-    for (int i = 0; i <= 400; ++i) {
-        // The hand keeps to the mean of the normals over the width of the line.
-        Vec3 n{0};
-        for (int k = std::max(0, i - reach); k <= std::min(400, i + reach); ++k) n += path[k].frame.n;
-        n = glm::length(n) > 0 ? glm::normalize(n) : path[i].frame.n;
-        const double press = std::min(1.0, i / 60.0) * 0.25 * preset.length;
-        stroke::StrokeSample p;
-        p.time = i * 1e-3;
-        p.position = path[i].frame.origin + (preset.length - press) * n;
-        const Frame f = make_frame(Vec3{0}, n, glm::cross(n, path[i].frame.t));
-        p.rotation = glm::quat_cast(Mat3(f.t, f.b, f.n));
-        s.trace.samples.push_back(p);
-    }
-    return s;
-}
-
-// With `wiped` of its ink gone the tuft no longer closes: every one of its bristles is drawn and
-// inked by itself.
-double stamps_per_second(const stroke::Model& model, int texels, double wiped = 0, const char* brush = "mixed-medium") {
-    stroke::Document painting(model);
-    stroke::PaintStroke s = drag(model, painting, texels, brush);
-    const stroke::BrushAction wipe{
-        .kind = stroke::BrushActionKind::wipe, .brush = s.brush, .ink = s.ink, .extent = {.amount = wiped}};
-    if (wiped > 0) s.settings.dip = stroke::DipMode::persistent;
-    std::vector<double> runs;
-    for (int repeat = 0; repeat < 5; ++repeat) {
-        if (wiped > 0) painting.paint(wipe);
-        const double start = cpu_seconds();
-        const stroke::StrokeReport report = painting.paint(s);
-        runs.push_back(static_cast<double>(report.stamps) / (cpu_seconds() - start));
-    }
-    return quantile(runs, 0.5);
-}
-
-// From the sample at which the tuft first touches to ink on the texels, in a painting that has
-// just been opened: milliseconds of wall time for all that is computed between.
-double first_ink_milliseconds(const stroke::Model& model, int texels) {
-    std::vector<double> runs;
-    for (int repeat = 0; repeat < 5; ++repeat) {
-        stroke::Document painting(model);
-        stroke::PaintStroke s = drag(model, painting, texels);
-        const std::vector<brush::Pose> poses = stroke::spatial_poses(s.trace);
-        s.trace.samples.clear();
-        const double start = wall_seconds();
-        painting.begin(s);
-        for (std::size_t i = 0; i < poses.size() && painting.appearance().take_dirty().empty(); ++i)
-            painting.extend(std::span(&poses[i], 1));
-        runs.push_back((wall_seconds() - start) * 1e3);
-    }
-    return quantile(runs, 0.5);
 }
 
 // Colour of a dirty square of 64 x 64 texels: 16 tiles with all of `films` films of 4 pigments.
@@ -265,7 +48,7 @@ double microseconds_per_square(int films, const char* substrate_name) {
         }
         runs.push_back((cpu_seconds() - start) * 1e6);
     }
-    return sink < 0 ? 0 : quantile(runs, 0.5);
+    return sink < 0 ? 0 : quantile_of(runs, 0.5);
 }
 
 struct RodTimes {
@@ -298,7 +81,7 @@ RodTimes rod_microseconds(const brush::Preset& preset, int runs) {
     }
     const auto [lo, hi] = std::minmax_element(means.begin(), means.end());
     const double spread = 0.5 * (*hi - *lo);
-    return {quantile(means, 0.5), spread, quantile(times, 0.5), quantile(times, 0.99)};
+    return {quantile_of(means, 0.5), spread, quantile_of(times, 0.5), quantile_of(times, 0.99)};
 }
 
 std::string cpu_name() {
@@ -306,24 +89,6 @@ std::string cpu_name() {
     for (std::string line; std::getline(info, line);)
         if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
     return "unknown";
-}
-
-struct Case {
-    std::string name;
-    stroke::Model model;
-    double atlas_seconds = 0, map_seconds = 0, graph_seconds = 0;
-};
-
-/// Wall time of the two phases, from the progress that they report.
-ProgressFn timed(const ProgressFn& progress, double& map_seconds, double& graph_seconds) {
-    return [&map_seconds, &graph_seconds, progress](std::string_view phase, double fraction) {
-        double* const seconds = phase == "texel map"       ? &map_seconds
-                                : phase == "cluster graph" ? &graph_seconds
-                                                           : nullptr;
-        if (seconds && fraction == 0) *seconds = -wall_seconds();
-        if (seconds && fraction == 1) *seconds += wall_seconds();
-        return !progress || progress(phase, fraction);
-    };
 }
 
 double resident_megabytes() {
@@ -336,19 +101,14 @@ double resident_megabytes() {
 }
 
 /// Models to measure on.
-std::vector<Case> make_cases(const Bench& a, std::uint32_t size, Console& console) {
-    std::vector<Case> cases;
-    const auto add = [&](std::string name, mesh::PolygonSoup soup) {
+std::vector<MeasuredModel> make_models(const Bench& a, std::uint32_t size, Console& console) {
+    std::vector<MeasuredModel> models;
+    const auto add = [&](const std::string& name, mesh::PolygonSoup soup) {
         stroke::ModelOptions options = model_options(a.surface, console);
         options.unwrap.size = size;
-        options.repair.metres_per_unit = metres_per_unit(soup);
-        Case c{.name = std::move(name)};
         set_thread_count(0);  // as a user waits for it
-        options.progress = timed(console.progress(), c.map_seconds, c.graph_seconds);
-        c.model = stroke::prepare_model(std::move(soup), options);
+        models.push_back(prepare_measured(name, std::move(soup), std::move(options)));
         set_thread_count(1);
-        for (const auto& [phase, seconds] : c.model.atlas_report.seconds) c.atlas_seconds += seconds;
-        cases.push_back(std::move(c));
     };
     if (!a.model.empty()) {
         add(a.model.stem().string(), io::read_model(a.model, cad_reading(a.model, a.surface)));
@@ -356,7 +116,7 @@ std::vector<Case> make_cases(const Bench& a, std::uint32_t size, Console& consol
         add("sphere-100k", sphere(158));
         if (!a.quick) add("sphere-1M", sphere(500));
     }
-    return cases;
+    return models;
 }
 
 /// Figures that need no model.
@@ -384,7 +144,7 @@ nlohmann::json measure_parts() {
 }
 
 /// Figures of one model; `square`: microseconds of the colour of 64 × 64 texels.
-nlohmann::json measure_model(Case& c, footprint::Isa isa, double square, Console& console) {
+nlohmann::json measure_model(const MeasuredModel& c, footprint::Isa isa, double square, Console& console) {
     nlohmann::json m{{"triangles", c.model.mesh->n_triangles()},
                      {"atlas_size", c.model.atlas.size},
                      {"texel_store", c.model.texels.packed.empty() ? "float" : "packed"}};
@@ -408,6 +168,7 @@ nlohmann::json measure_model(Case& c, footprint::Isa isa, double square, Console
     m["ns_per_texel"]["film_step"] = film.step_ns;
     m["ns_per_texel"]["transfer"] = film.transfer_ns;
     if (film.steps_per_second > 0) m["film_steps_per_second"] = film.steps_per_second;
+    m["repair_seconds"] = c.repair_seconds;
     m["atlas_seconds"] = c.atlas_seconds;
     m["texel_map_seconds"] = c.map_seconds;
     m["cluster_graph_seconds"] = c.graph_seconds;
@@ -458,13 +219,14 @@ void print_figures(const nlohmann::json& j) {
 }  // namespace
 
 int run(const Bench& a) {
+    check_bench_report(a);
     Console console(a.common.quiet);
     set_thread_count(1);
     const std::uint32_t size = a.surface.atlas_size > 0 ? a.surface.atlas_size : a.quick ? 2048 : 4096;
     const footprint::Isa isa = std::min(isa_of(a.isa), footprint::best_isa());
-    std::vector<Case> cases = make_cases(a, size, console);
+    const std::vector<MeasuredModel> models = make_models(a, size, console);
     nlohmann::json j = measure_parts();
-    for (Case& c : cases) {
+    for (const MeasuredModel& c : models) {
         const nlohmann::json& m = j["models"][c.name] =
             measure_model(c, isa, j["composite_microseconds"]["one_film"].get<double>(), console);
         if (j.contains("microseconds_per_stamp")) continue;
@@ -477,11 +239,13 @@ int run(const Bench& a) {
     j["peak_mb"] = peak_megabytes();
     j["resident_mb"] = resident_megabytes();
     j["isa"] = isa == footprint::Isa::avx512 ? "avx512" : isa == footprint::Isa::avx2 ? "avx2" : "baseline";
+    if (!a.report.empty()) write_bench_report(a, j, console);
     console.clear();
     if (a.common.json)
         print_json(j);
     else
         print_figures(j);
+    if (!a.report.empty() && !a.common.json) fmt::print("wrote {}\n", a.report.string());
     return 0;
 }
 

@@ -27,5 +27,7 @@ int run(const InkWork& arguments);
 int run(const DeviceWork& arguments);
 int run(const Decals& arguments);
 int run(const TrajectoryWork& arguments);
+int run(const VariantsWork& arguments);
+int run(const RunTask& arguments);
 
 }  // namespace tuft::cli

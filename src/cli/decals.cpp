@@ -134,7 +134,7 @@ decal::SheetOptions sheet_options(const Decals& a, Console& console) {
     return options;
 }
 
-nlohmann::json to_json(const decal::Piece& piece) {
+nlohmann::json piece_json(const decal::Piece& piece) {
     const Vec2 size = decal::box_of(piece.film).size() / kMillimetre;
     return {{"number", piece.number},
             {"page", piece.page + 1},
@@ -163,7 +163,7 @@ void print_result(const Decals& a, const decal::Sheet& sheet, const std::vector<
                          {"max_strain", sheet.max_strain},
                          {"pieces", nlohmann::json::array()},
                          {"plates", nlohmann::json::array()}};
-        for (const decal::Piece& piece : sheet.pieces) j["pieces"].push_back(to_json(piece));
+        for (const decal::Piece& piece : sheet.pieces) j["pieces"].push_back(piece_json(piece));
         for (const decal::Plate& plate : sheet.plates)
             j["plates"].push_back({{"name", plate.name}, {"full_film_units", plate.full}});
         print_json(j);

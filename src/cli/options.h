@@ -56,5 +56,8 @@ CLI::App* add_decals(CLI::App& app, Decals& decals);
 CLI::App* add_film(CLI::App& app, Film& film);
 /// Adds `tuft trajectory`.
 CLI::App* add_trajectory(CLI::App& app, TrajectoryWork& work);
+/// Add `tuft variants` and `tuft run-task`.
+CLI::App* add_variants(CLI::App& app, VariantsWork& work);
+CLI::App* add_run_task(CLI::App& app, RunTask& work);
 
 }  // namespace tuft::cli

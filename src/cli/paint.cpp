@@ -139,7 +139,8 @@ void note_misses(const std::vector<stroke::StrokeReport>& reports,
                              farthest / kMillimetre));
 }
 
-/// Prepares strokes for the document: layers, masks, groups, presets and films.
+}  // namespace
+
 void prepare_strokes(std::vector<stroke::JournalEntry>& strokes, stroke::Document& painting, const Paint& a,
                      Console& console) {
     strokes = stroke::onto_named_layers(std::move(strokes), painting.layers().table(), a.layer);
@@ -155,7 +156,6 @@ void prepare_strokes(std::vector<stroke::JournalEntry>& strokes, stroke::Documen
     note_inks(strokes, painting, console);
 }
 
-/// Throws `Error` for strokes that cannot be of this model's size.
 void check_sizes(const std::vector<stroke::JournalEntry>& strokes, stroke::Document& painting,
                  const stroke::Model& model, const Paint& a) {
     const auto length_of = [&](const std::string& brush) { return painting.materials().brush(brush).length; };
@@ -163,6 +163,8 @@ void check_sizes(const std::vector<stroke::JournalEntry>& strokes, stroke::Docum
         throw Error(a.model.string(), Message("{} (see --unit, --place-width, --brush)", fault));
     for (const stroke::JournalEntry& s : strokes) painting.check_size(s);
 }
+
+namespace {
 
 /// Returns the project that the strokes go into: the one that was opened, a new one, or none.
 std::optional<io::Project> output_project(const Paint& a, bool in_place, OpenProject* before, const FileFrame& frame,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/place.h"
+#include "stroke/document/document.h"
 #include "stroke/journal/entry.h"
 
 /// \file
@@ -19,6 +20,14 @@ struct StrokeSource {
     std::function<std::optional<PlacedDrawing>(std::vector<stroke::JournalEntry>&, const stroke::Model&, Console&)>
         place;
 };
+
+/// Prepares strokes for the document: layers, masks, groups, presets and films.
+void prepare_strokes(std::vector<stroke::JournalEntry>& strokes, stroke::Document& painting, const Paint& arguments,
+                     Console& console);
+
+/// Throws `Error` for strokes that cannot be of this model's size.
+void check_sizes(const std::vector<stroke::JournalEntry>& strokes, stroke::Document& painting,
+                 const stroke::Model& model, const Paint& arguments);
 
 /// Paints strokes as `tuft paint` does and writes all outputs. Returns the exit status.
 int paint(const Paint& arguments, const StrokeSource& source);

@@ -13,6 +13,7 @@
 #include "core/text/counted.h"
 #include "core/text/units.h"
 #include "io/motion/motion_files.h"
+#include "io/project/restore.h"
 #include "stroke/gesture/hand.h"
 #include "stroke/journal/recorded_journal.h"
 

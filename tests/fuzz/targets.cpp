@@ -27,6 +27,7 @@
 #include "promise.h"
 #include "stroke/gesture/bias_correction.h"
 #include "stroke/journal/entry_json.h"
+#include "variants/plan.h"
 
 namespace tuft::fuzz {
 namespace {
@@ -171,6 +172,17 @@ void run_bias(Input input) {
     });
 }
 
+void run_plan(Input input) {
+    refusing([&] { variants::parse_plan(text_of(input), "input.toml", "/"); });
+}
+
+void run_task(Input input) {
+    refusing([&] {
+        const variants::Task task = variants::task_of_json(text_of(input), "input.json");
+        promise(variants::task_of_json(variants::json_of(task), "again.json") == task, "a task is read again");
+    });
+}
+
 void run_entry(Input input) {
     refusing([&] {
         const std::string text = stroke::entry_json(stroke::entry_of({}, text_of(input)));
@@ -228,6 +240,8 @@ constexpr Target kTargets[] = {
     {"ink", run_ink, 3000, true},
     {"substrate", run_substrate, 3000, true},
     {"bias", run_bias, 3000, true},
+    {"plan", run_plan, 3000, true},
+    {"task", run_task, 3000, true},
     {"entry", run_entry, 3000, true},
     {"project", run_project, 500, false},
     {"image", run_image, 500, false},

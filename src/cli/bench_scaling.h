@@ -1,0 +1,18 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "cli/arguments.h"
+#include "cli/console.h"
+
+/// \file
+/// How the speed of `tuft` goes with threads, triangles, texels and the size of the stamp, for the page of `tuft
+/// bench`.
+namespace tuft::cli {
+
+/// Returns four lists of measurements: "threads" (40 strokes side by side, and preparing a model; wall time),
+/// "triangles", "texels" and "stamp" (one thread, CPU time; medians). Runs for half a minute, or some minutes where not
+/// quick. Sets the number of threads to one.
+nlohmann::json measure_scaling(const Bench& arguments, Console& console);
+
+}  // namespace tuft::cli

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/system/progress.h"
+#include "stroke/document/document.h"
+#include "stroke/surface/model.h"
+
+/// \file
+/// What `tuft bench` measures strokes with: models, paths over them and clocks.
+namespace tuft::cli {
+
+double cpu_seconds();   ///< of this thread
+double wall_seconds();  ///< since some start
+/// The value below which a part q of the values lies; 0 without values.
+double quantile_of(std::vector<double> values, double q);
+
+/// A model to measure on, and how long preparing it took.
+struct MeasuredModel {
+    std::string name;
+    stroke::Model model;
+    double atlas_seconds = 0, map_seconds = 0, graph_seconds = 0;  ///< wall time
+    double repair_seconds = 0, all_seconds = 0;
+};
+
+/// Returns a sphere of 50 mm with rings of equal height; 4 n² triangles.
+mesh::PolygonSoup sphere(int n);
+
+/// Prepares a model whose surface is scaled to that of a sphere of 50 mm, so that texels and brushes are about as large
+/// on every model.
+MeasuredModel prepare_measured(std::string name, mesh::PolygonSoup soup, stroke::ModelOptions options);
+
+/// Deposit alone: planning, evaluating and inking discs one after the other along a path. Median of repeats, CPU time.
+double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps, footprint::Isa isa,
+                              std::span<const char* const> inks);
+
+/// Texels of a disc of `texels` across.
+double footprint_texels(int texels);
+
+/// A stroke along a path by a brush as thick as makes lines of about `texels` across; the document gets the brush. Hand
+/// samples at 1 kHz and a stamp per texel. `turn` (radians about z): where on the model it begins.
+stroke::PaintStroke drag(const stroke::Model& model, stroke::Document& painting, int texels,
+                         const char* brush = "mixed-medium", double turn = 0);
+
+/// The whole path: contact, bending and deposit of that stroke. Median of repeats, CPU time. With `wiped` of its ink
+/// gone the tuft no longer closes: every one of its bristles is drawn and inked by itself.
+double stamps_per_second(const stroke::Model& model, int texels, double wiped = 0, const char* brush = "mixed-medium",
+                         int repeats = 5);
+
+/// From the sample at which the tuft first touches to ink on the texels, in a painting that has just been opened: wall
+/// time of all that is computed between.
+double first_ink_milliseconds(const stroke::Model& model, int texels);
+
+}  // namespace tuft::cli
