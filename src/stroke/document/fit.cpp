@@ -8,6 +8,7 @@
 #include "core/system/parallel.h"
 #include "stroke/gesture/hand.h"
 #include "stroke/placement/placement.h"
+#include "stroke/placement/projection.h"
 
 namespace tuft::stroke {
 namespace {
@@ -118,7 +119,9 @@ StrokeFit fit_flat(const JournalEntry& entry, const mesh::SurfaceQuery& former, 
     const PaintStroke& stroke = *entry.as<PaintStroke>();
     StrokeFit fit{.stroke = entry.id, .flat = true};
     const StrokeSamples trace = steady(stroke.trace, stroke.settings);
-    const SurfaceTrace was = map_to_surface(former, trace), now = map_to_surface(revised, trace);
+    SurfaceTrace was = map_to_surface(former, trace), now = map_to_surface(revised, trace);
+    leave_other_sheets(former, trace, was);
+    leave_other_sheets(revised, trace, now);
     std::vector<Place> places(trace.samples.size());
     for (std::size_t i = 0; i < places.size(); ++i) {
         Place& place = places[i];
