@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "grids.h"
+#include "mesh/read/polygon_soup.h"
+#include "mesh/repair/repair.h"
+#include "paths.h"
 
 namespace tuft::stroke {
 namespace {
@@ -96,6 +101,52 @@ TEST(FreeArea, ItHasTheDrawingsShape) {
     EXPECT_NEAR(wide->size.x, 0.08, 0.4 * kGrid);
     EXPECT_NEAR(square->at.position.x, 0, 0.4 * kGrid) << "the middle of all the places that are as good";
     EXPECT_FALSE(find_free_area(query, Side::back, 1)) << "its back is not painted on";
+}
+
+// The front of a car: lamps at both sides, larger than the bonnet between them, of which each has steps around it.
+TEST(FreeArea, OnASymmetricModelItLiesInThePlaneOfSymmetry) {
+    const auto front = [](double bonnet) {
+        return walls({{-0.1, -0.04, -0.05, 0.05, 0},
+                      {-0.04, -bonnet, -0.05, 0.05, 0.06},
+                      {-bonnet, bonnet, -0.05, 0.05, 0.02},
+                      {bonnet, 0.04, -0.05, 0.05, 0.06},
+                      {0.04, 0.1, -0.05, 0.05, 0}});
+    };
+    const TriangleMesh wide = front(0.025), narrow = front(0.006);
+    const SurfaceQuery over(wide), beside(narrow);
+    const auto middle = find_free_area(over, Side::front, 1);
+    ASSERT_TRUE(middle);
+    EXPECT_NEAR(middle->at.position.x, 0, 1e-6) << "50 of 60 mm: the rays of the middle column lie in the plane";
+    EXPECT_NEAR(middle->size.x, 0.05, 2 * 0.2 * kGrid);
+    const auto lamp = find_free_area(beside, Side::front, 1);
+    ASSERT_TRUE(lamp);
+    EXPECT_NEAR(std::abs(lamp->at.position.x), 0.07, 0.2 * kGrid) << "12 of 60 mm are too few";
+}
+
+TEST(FreeArea, OnAnAsymmetricModelItIsTheLargest) {
+    const TriangleMesh m = walls({{-0.1, -0.025, -0.05, 0.05, 0}, {-0.025, 0.1, -0.05, 0.05, 0.02}});
+    const SurfaceQuery query(m);
+    const auto free = find_free_area(query, Side::front, 1);
+    ASSERT_TRUE(free);
+    EXPECT_NEAR(free->at.position.x, 0.0375, 0.2 * kGrid) << "the middle of the larger part, not of the model";
+}
+
+// The shipped models of revolution, and the car, whose nose points to +x.
+TEST(FreeArea, OnTheShippedModelsItIsInTheMiddle) {
+    for (const auto& [name, side, axis] : {std::tuple{"bowl.ply", Side::front, 0},
+                                           {"vase.ply", Side::front, 0},
+                                           {"car.ply", Side::right, 1},
+                                           {"car.ply", Side::left, 1},
+                                           {"car.ply", Side::top, 1}}) {
+        const TriangleMesh model =
+            mesh::build_surface(mesh::read_polygon_file(source_folder() + "/models/" + name)).mesh;
+        const SurfaceQuery query(model);
+        for (const double aspect : {1.0, 2.0, 4.0}) {
+            const auto free = find_free_area(query, side, aspect);
+            ASSERT_TRUE(free) << name;
+            EXPECT_NEAR(free->at.position[axis], 0, 1e-3) << name << " from the " << side_name(side) << ", " << aspect;
+        }
+    }
 }
 
 TEST(FreeArea, ACalmAreaIsPreferredToALargerRoughOne) {

@@ -9,6 +9,7 @@
 #include "stroke/drawing/follow_model.h"
 #include "stroke/gesture/hand.h"
 #include "stroke/placement/placement.h"
+#include "stroke/placement/projection.h"
 
 namespace tuft::stroke {
 namespace {
@@ -131,9 +132,10 @@ StrokeFit fit_flat(const ComparedStroke& stroke, const Revision& r) {
         return steady(s.trace, s.settings);
     };
     StrokeFit fit{.stroke = stroke.entry.id, .flat = true};
-    const StrokeSamples trace = steadied(stroke.entry);
-    const SurfaceTrace was = map_to_surface(r.former, trace),
-                       now = map_to_surface(r.revised, steadied(stroke.followed));
+    const StrokeSamples trace = steadied(stroke.entry), followed = steadied(stroke.followed);
+    SurfaceTrace was = map_to_surface(r.former, trace), now = map_to_surface(r.revised, followed);
+    leave_other_sheets(r.former, trace, was);
+    leave_other_sheets(r.revised, followed, now);
     std::vector<Place> places(std::min(was.samples.size(), now.samples.size()));
     for (std::size_t i = 0; i < places.size(); ++i) {
         Place& place = places[i];

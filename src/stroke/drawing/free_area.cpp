@@ -25,6 +25,9 @@ constexpr double kBent = 0.85, kTurned = 0.34, kSteep = 2;
 constexpr double kFilled = 0.5;  // cells between a ray's depth and the closed one from which on it looks into a gap
 constexpr int kRoughReach = 2;   // cells to each side over which roughness is taken
 constexpr double kLeastScale = 1.0 / 32, kMostAspect = 32;
+constexpr double kSymmetric = 0.97;  // of the rays that hit: so many have a mirror image in a view that has a middle
+constexpr double kSameNormal = 0.9;  // cosine between the normal of a ray and that of its image
+constexpr double kCentred = 0.33;    // of the largest area's scale: so large an area in the middle is taken for it
 constexpr int kAround = 8,
               kWalls = 6;  // horizontal rays about a point of the inside, and how many meet a wall
 
@@ -100,6 +103,8 @@ class View {
         cast();
     }
 
+    /// Whether its left half mirrors its right one.
+    bool symmetric() const { return symmetric_; }
     bool flat() const { return !(cell_.x > 0 && cell_.y > 0); }
     const Vec2& cell() const { return cell_; }
     const Vec3& look() const { return look_; }
@@ -124,6 +129,22 @@ class View {
         return walls >= kWalls;
     }
 
+    bool is_symmetric(const std::vector<double>& depth, double slack) const {
+        const Vec3 right = glm::normalize(right_);
+        std::size_t seen = 0, mirrored = 0;
+        for (int j = 0; j < kCells; ++j)
+            for (int i = 0; i < kCells; ++i) {
+                const std::size_t here = index(i, j), there = index(kCells - 1 - i, j);
+                if (!std::isfinite(depth[here])) continue;
+                ++seen;
+                const Vec3& n = cells_[there].normal;
+                const Vec3 image = n - 2 * glm::dot(n, right) * right;
+                mirrored += std::abs(depth[here] - depth[there]) <= slack &&
+                            (cells_[here].seen == 0 || glm::dot(image, cells_[here].normal) >= kSameNormal);
+            }
+        return static_cast<double>(mirrored) >= kSymmetric * static_cast<double>(seen);
+    }
+
     void cast() {
         constexpr double kFar = std::numeric_limits<double>::infinity();
         std::vector<double> depth(kCells * kCells, kFar);
@@ -143,6 +164,7 @@ class View {
         const double gap = kFilled * std::max(cell_.x, cell_.y);
         for (std::size_t k = 0; k < closed.size(); ++k)
             if (std::isfinite(closed[k]) && !(depth[k] - closed[k] <= gap)) cells_[k] = {};
+        symmetric_ = is_symmetric(closed, gap);
         const auto steps = [&](std::size_t k, std::size_t before, double cell) {
             return std::abs(closed[k] - closed[before]) > kSteep * cell;
         };
@@ -165,7 +187,7 @@ class View {
     const mesh::SurfaceQuery& query_;
     Vec3 look_, right_, up_, before_;
     Vec2 cell_;
-    bool inside_;
+    bool inside_, symmetric_ = false;
     std::vector<Sum> cells_;
     std::vector<double> rough_;
 };
@@ -231,12 +253,12 @@ std::size_t middle_one(const std::vector<Rectangle>& found) {
     return best;
 }
 
-/// The largest rectangle on these cells.
-std::optional<Rectangle> largest(const View& view, const Sums& sums, const Shape& shape) {
+/// The largest rectangle on these cells with its centre in the columns `from` to `to`.
+std::optional<Rectangle> largest(const View& view, const Sums& sums, const Shape& shape, int from, int to) {
     for (double scale = 1; scale > kLeastScale; scale *= std::exp2(-0.25)) {
         std::vector<Rectangle> found;
         for (int j = 0; j < kCells; ++j)
-            for (int i = 0; i < kCells; ++i)
+            for (int i = from; i <= to; ++i)
                 if (Rectangle r = shape.at(i, j, scale, view.cell()); fits(sums, r, view.look())) found.push_back(r);
         if (found.empty()) continue;
         Rectangle best = found[middle_one(found)];
@@ -248,6 +270,21 @@ std::optional<Rectangle> largest(const View& view, const Sums& sums, const Shape
         return best;
     }
     return {};
+}
+
+struct RatedRectangle {
+    std::optional<Rectangle> rectangle;
+    double worth = 0;  // its scale, less where it is rough
+};
+
+/// The rectangle that is worth most, with its centre in the columns `from` to `to`.
+RatedRectangle best_rectangle(const View& view, const Shape& shape, int from, int to) {
+    RatedRectangle best;
+    for (const Calm& calm : kCalm) {
+        const std::optional<Rectangle> r = largest(view, view.calm(calm.rough), shape, from, to);
+        if (r && calm.counts * r->scale > best.worth * (1 + 1e-9)) best = {r, calm.counts * r->scale};
+    }
+    return best;
 }
 
 }  // namespace
@@ -289,14 +326,11 @@ std::optional<FreeArea> find_free_area(const mesh::SurfaceQuery& query, Side sid
     const View view(query, side);
     if (view.flat()) return {};
     const Shape shape(view.cell(), aspect);
-    std::optional<Rectangle> best;
-    double most = 0;
-    for (const Calm& calm : kCalm) {
-        const std::optional<Rectangle> r = largest(view, view.calm(calm.rough), shape);
-        if (!r || calm.counts * r->scale <= most * (1 + 1e-9)) continue;
-        most = calm.counts * r->scale;
-        best = r;
-    }
+    auto [best, worth] = best_rectangle(view, shape, 0, kCells - 1);
+    if (best && view.symmetric())
+        if (const RatedRectangle middle = best_rectangle(view, shape, kMiddle, kMiddle);
+            middle.worth >= kCentred * worth)
+            best = middle.rectangle;
     if (!best) return {};
     // A ray into a shut line may meet nothing.
     std::optional<mesh::SurfacePoint> at;

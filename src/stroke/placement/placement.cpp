@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "stroke/gesture/tractrix.h"
 #include "stroke/placement/holder.h"
 #include "stroke/placement/levelling.h"
+#include "stroke/placement/projection.h"
 #include "stroke/placement/smoothed_surface.h"
 #include "stroke/placement/surface_mapping.h"
 #include "stroke/placement/tip_lag.h"
@@ -112,6 +114,33 @@ void keep_rolls_to_path(std::span<const StrokeSample> flat, std::span<SurfaceSam
     }
 }
 
+/// Lifts the brush where a stroke has left its sheet. The hand waits ahead until the stroke has caught up with it. A
+/// brush pressed down at once where the stroke comes back would bend to any side: it is pressed as it goes on, so that
+/// it trails.
+void lift_off_sheet(const std::vector<bool>& left, std::span<SurfaceSample> mapped) {
+    double ahead = 0;                                       // metres by which the hand still leads
+    double back = std::numeric_limits<double>::infinity();  // metres since the stroke came back
+    for (std::size_t i = 0; i < left.size(); ++i) {
+        SurfaceSample& s = mapped[i];
+        const double tip_lag = glm::length(s.tip_lag);
+        const double gone = i > 0 ? glm::distance(s.position, mapped[i - 1].position) : 0;
+        if (left[i]) {
+            s.pressure = 0;
+            back = 0;
+            ahead = std::max(0.0, ahead - gone);
+            if (tip_lag > ahead) s.tip_lag *= ahead / tip_lag;
+            continue;
+        }
+        if (i > 0 && !left[i - 1]) back += gone;
+        if (!(back < tip_lag)) {
+            ahead = tip_lag;
+            continue;
+        }
+        s.pressure *= back / tip_lag;
+        s.tip_lag *= std::lerp(std::min(ahead / tip_lag, 1.0), 1.0, back / tip_lag);
+    }
+}
+
 }  // namespace
 
 HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& trace, const HolderOptions& options) {
@@ -127,9 +156,11 @@ HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& trace, 
         ink.samples[i].position = trace.samples[own].position;
     }
     path.mapped = map_to_surface(query, ink);
+    const std::vector<bool> left = leave_other_sheets(query, ink, path.mapped);
     keep_rolls_to_path(ink.samples, path.mapped.samples);
     for (std::size_t i = 0; i < ink.samples.size(); ++i)
         path.mapped.samples[i].tip_lag = Vec2(lifted.samples[i].position - ink.samples[i].position);
+    lift_off_sheet(left, path.mapped.samples);
     path.poses = pose_holder(query, path.mapped.samples, options);
     return path;
 }

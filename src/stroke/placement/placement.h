@@ -50,7 +50,8 @@ struct SurfaceTrace {
 /// length. Over grooves, relief, noise of a scan and gaps between parts a drawing stays whole, where geodesics of the
 /// triangles diverge. It does not turn round a rim. Normal and axes are those of the patch.
 ///
-/// `SurfaceMapping::project` takes the first hit of a ray along right × down from outside the mesh.
+/// `SurfaceMapping::project` takes the first hit of a ray along right × down from outside the mesh. `hand_path` then
+/// takes the stroke off all but one sheet (`leave_other_sheets`, projection.h).
 ///
 /// Past a border a geodesic continues straight in the last plane. A ray without a hit takes height and frame of the
 /// sample nearest in time that has one. Throws `Error` for a trace that is not flat, numbers that are not finite, and
@@ -123,8 +124,9 @@ struct HandPath {
     std::vector<brush::Pose> poses;
     std::size_t set_down = 0;  ///< poses before that of the trace's first sample
 };
-/// Returns the poses of a trace: of a flat one after `compensate_tip_lag`, `lift_off`, `map_to_surface` and
-/// `pose_holder`; of one in space its own.
+/// Returns the poses of a trace: of a flat one after `compensate_tip_lag`, `lift_off`, `map_to_surface`,
+/// `leave_other_sheets` and `pose_holder`; of one in space its own. The brush is lifted where a stroke has left its
+/// sheet. Where it comes back, the brush is pressed over a path as long as its tip lag.
 HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& trace, const HolderOptions& options);
 
 }  // namespace tuft::stroke

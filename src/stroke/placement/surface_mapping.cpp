@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/system/interrupt.h"
+#include "stroke/placement/projection.h"
 
 namespace tuft::stroke {
 
@@ -104,71 +105,6 @@ SurfaceTrace map_wrapped(const mesh::SurfaceQuery& query, const StrokeSamples& t
         out.down = here.down;
         mapped.samples.push_back(out);
     }
-    return mapped;
-}
-
-/// Gives samples whose ray met nothing the height and frame of the nearest one that hit.
-void fill_misses(SurfaceTrace& mapped, const std::vector<Vec3>& on_plane, const Vec3& outward) {
-    std::vector<std::size_t> hits;
-    for (std::size_t i = 0; i < mapped.samples.size(); ++i)
-        if (mapped.samples[i].on_surface) hits.push_back(i);
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < mapped.samples.size(); ++i) {
-        SurfaceSample& s = mapped.samples[i];
-        if (s.on_surface) continue;
-        if (hits.empty()) {
-            s.position = on_plane[i];
-            continue;
-        }
-        while (next < hits.size() && hits[next] < i) ++next;
-        std::size_t from = next < hits.size() ? hits[next] : hits.back();
-        if (next > 0 && next < hits.size() &&
-            s.time - mapped.samples[hits[next - 1]].time <= mapped.samples[hits[next]].time - s.time)
-            from = hits[next - 1];
-        const SurfaceSample& near = mapped.samples[from];
-        s.on = near.on;
-        s.normal = near.normal;
-        s.right = near.right;
-        s.down = near.down;
-        s.position = on_plane[i] + glm::dot(near.position - on_plane[i], outward) * outward;
-    }
-}
-
-SurfaceTrace map_projected(const mesh::SurfaceQuery& query, const StrokeSamples& trace) {
-    const Placement& place = trace.placement;
-    const Vec3 outward = glm::normalize(glm::cross(place.down, place.right));
-    const Axes axes = axes_across(outward, place.right, place.down);
-    const Box& bounds = query.mesh().bounds;
-
-    SurfaceTrace mapped;
-    if (const auto near = query.closest_point(place.origin)) mapped.origin_gap = near->distance;
-    std::vector<Vec3> on_plane;
-    on_plane.reserve(trace.samples.size());
-    mapped.samples.reserve(trace.samples.size());
-    for (const StrokeSample& s : trace.samples) {
-        check_interrupt();
-        SurfaceSample out = hand_data(s);
-        const Vec3 p = place.origin + s.position.x * axes.right + s.position.y * axes.down;
-        on_plane.push_back(p);
-        const double above = glm::dot(bounds.centre() - p, outward) + bounds.diagonal();
-        const Vec3 eye = p + above * outward;
-        out.normal = outward;
-        out.right = axes.right;
-        out.down = axes.down;
-        if (const auto hit = exact_ray(query, eye, -outward, std::numeric_limits<double>::infinity())) {
-            out.on = *hit;
-            out.position = out.on.position;
-            out.normal = out.on.normal;
-            const Axes here = axes_across(out.normal, axes.right, axes.down);
-            out.right = here.right;
-            out.down = here.down;
-        } else {
-            out.on_surface = false;
-            ++mapped.missed;
-        }
-        mapped.samples.push_back(out);
-    }
-    fill_misses(mapped, on_plane, outward);
     return mapped;
 }
 
