@@ -347,13 +347,13 @@ Entry make_entry(CLI::App& app, CLI::App* (*add)(CLI::App&, T&)) {
 /// Adds all commands, in the order of --help.
 std::vector<Entry> add_commands(CLI::App& app) {
     return {
-        make_entry(app, add_paint),      make_entry(app, add_write),    make_entry(app, add_inspect),
-        make_entry(app, add_unwrap),     make_entry(app, add_decimate), make_entry(app, add_replay),
-        make_entry(app, add_export),     make_entry(app, add_decals),   make_entry(app, add_trajectory),
-        make_entry(app, add_variants),   make_entry(app, add_run_task), make_entry(app, add_layer),
-        make_entry(app, add_fill),       make_entry(app, add_mask),     make_entry(app, add_render),
-        make_entry(app, add_film),       make_entry(app, add_brush),    make_entry(app, add_bias),
-        make_entry(app, add_ink),        make_entry(app, add_bench),    make_entry(app, add_device),
+        make_entry(app, add_paint),    make_entry(app, add_write),    make_entry(app, add_inspect),
+        make_entry(app, add_unwrap),   make_entry(app, add_decimate), make_entry(app, add_replay),
+        make_entry(app, add_export),   make_entry(app, add_decals),   make_entry(app, add_trajectory),
+        make_entry(app, add_variants), make_entry(app, add_run_task), make_entry(app, add_layer),
+        make_entry(app, add_fill),     make_entry(app, add_mask),     make_entry(app, add_render),
+        make_entry(app, add_film),     make_entry(app, add_brush),    make_entry(app, add_bias),
+        make_entry(app, add_ink),      make_entry(app, add_bench),    make_entry(app, add_device),
     };
 }
 

@@ -17,7 +17,8 @@
 /// t the unit direction of the hand. While the hand goes straight on, x and s of a place on the surface do not change,
 /// so the edge that the stamps leave together is the displaced edge. h and k are value noise with cells of one hair
 /// across, 3 and 0.8 mm along for h: at the flanks the edge goes from hair to hair; at the ends, where n lies along t,
-/// each hair ends by itself. Ends of coarse bristles are split, so that they move the edge by no more than D. r is the substrate's grain at P in space, of unit rms. Its amplitude is G = 0.35 l ζ / (ζ
+/// each hair ends by itself. Ends of coarse bristles are split, so that they move the edge by no more than D. r is the
+/// substrate's grain at P in space, of unit rms. Its amplitude is G = 0.35 l ζ / (ζ
 /// + 10 µm), with length l and rms height ζ of the grain. The mean of δ is 0.
 ///
 /// w falls from 1 to 0 where a cell grows from half of the spacing to 1.25 of it, w' likewise against l: detail below a
