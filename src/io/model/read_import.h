@@ -11,7 +11,7 @@
 ///
 /// Both libraries crash on damaged files. They therefore run in processes of their own, `tuft-import` and
 /// `tuft-import-cad` (import_process.h). Such a process opens no file and has limits of computing time and memory by
-/// the file's size. It costs 3 ms more than a call, and Open CASCADE's 60 libraries are loaded for its files only.
+/// the file's size. It costs 3 ms more than a call, and Open CASCADE's 70 libraries are loaded for its files only.
 namespace tuft::io {
 
 /// What becomes a group of the faces of a CAD file.
