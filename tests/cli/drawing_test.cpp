@@ -101,7 +101,7 @@ TEST_F(Drawing, WideLinesAreAreasAndNarrowOnesStrokes) {
     EXPECT_EQ(j["strokes"].size(), 1u);
     EXPECT_EQ(paint(file + "--wide-lines 0")["areas"], 2);
     EXPECT_EQ(paint(file + "--wide-lines 5")["areas"], 0);
-    EXPECT_EQ(paint(file + "--place-width 12")["areas"], 0) << "1.3 and 0.3 mm wide as painted";
+    EXPECT_EQ(paint(file + "--place-width 9")["areas"], 0) << "1.2 and 0.3 mm wide as painted";
     for (const char* brush : {"--areas brush", "--brush wolf-medium", "--erase", "--film wet"})
         EXPECT_EQ(paint(file + brush)["areas"], 0) << brush;
     EXPECT_EQ(paint(file + "--ink cinnabar")["areas"], 1);
@@ -110,10 +110,10 @@ TEST_F(Drawing, WideLinesAreAreasAndNarrowOnesStrokes) {
 TEST_F(Drawing, EndsBeforeEdgesWhereItIsAsked) {
     write("across.svg",
           "<svg width='300mm' viewBox='0 0 300 20'><path d='M0 10 H300' stroke='red' stroke-width='10'/></svg>");
-    const std::string file = "--strokes " + path("across.svg") + " --place 0,0,0 --atlas-size 1024 ";
+    const std::string file = "--strokes " + path("across.svg") + " --place 0,0,0 ";
     const double cut = paint(file)["ink_mm3"], before = paint(file + "--edges end-before --edge-margin 5")["ink_mm3"];
-    // The sheet is 200 mm wide, the stripe ends 5 mm before both its borders; a texel is 0.2 mm.
-    EXPECT_NEAR(before / cut, 0.95, 0.003);
+    // The sheet is 200 mm wide, the stripe ends 5 mm before both its borders; a texel is 0.4 mm.
+    EXPECT_NEAR(before / cut, 0.95, 0.004);
     EXPECT_NEAR(double(paint(file + "--edges run-over")["ink_mm3"]) / cut, 1, 0.003);
     const std::string project = path("p.tuft");
     paint(file + "--edges end-before --project " + project);
