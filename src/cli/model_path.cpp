@@ -24,7 +24,8 @@ constexpr double kReach = 0.25;  // of a step, to either side, over which the pa
 /// How a drawing is repeated.
 struct Band {
     int repeats = 1;
-    double step = 0, scale = 1, width = 0;  ///< metres, as written; factor; metres, as painted
+    double step = 0, scale = 1, width = 0;  ///< metres between middles; factor; metres, as painted
+    double lap = 0;                         ///< metres, of neighbours that meet
 };
 
 Band band_of(double length, double width, const Paint& a) {
@@ -59,8 +60,12 @@ void place_copy(std::vector<stroke::JournalEntry>& copy, const Band& band, const
     stroke::place_drawing(drawing, place);
     stroke::place_areas(areas, place);
     Box bounds;
-    for (stroke::StrokeSamples* trace : drawing) stroke::bend_samples(*trace, curvature, band.width);
+    for (stroke::StrokeSamples* trace : drawing) {
+        stroke::lap_ends(trace->outline, 0.5 * band.width, band.lap);
+        stroke::bend_samples(*trace, curvature, band.width);
+    }
     for (stroke::FlatArea* area : areas) {
+        stroke::lap_ends(area->rings, 0.5 * band.width, band.lap);
         stroke::bend_area(*area, curvature, band.width);
         stroke::add_extent(bounds, *area);
     }
@@ -137,7 +142,8 @@ PlacedDrawing place_along(std::vector<stroke::JournalEntry>& strokes, const stro
                                                : curve_path(model, a, a.along, console);
     const double length = on.path.length(), width = stroke::width_of(extent);
     if (!(length > 0) || !(width > 0)) throw UsageError("--along needs a path and a drawing with a length");
-    const Band band = band_of(length, width, a);
+    Band band = band_of(length, width, a);
+    if (band.width > (1 - 1e-6) * band.step) band.lap = model.texels.texel_size;
     std::vector<stroke::JournalEntry> all;
     for (int k = 0; k < band.repeats; ++k) {
         const double along = (k + (on.path.closed ? 0 : 0.5)) * band.step, reach = kReach * band.step;

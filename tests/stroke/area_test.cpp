@@ -80,6 +80,30 @@ TEST(Area, ALineThinnerThanATexelLeavesItsAreaOfInk) {
     EXPECT_NEAR(total(p) / (p.materials().ink("carbon").strength() * 0.02 * 0.4 * texel), 1, 0.06);
 }
 
+TEST(Area, DetailKeepsItsShapeDownToThreeTexels) {
+    // A ring whose line and hole are three texels wide, at several places between texels.
+    const double texel = model().texels.texel_size;
+    for (const Vec2 off : {Vec2(0, 0), Vec2(0.5, 0.25), Vec2(0.25, 0.5), Vec2(0.8, 0.7)}) {
+        std::vector<Ring> rings(2);
+        for (int i = 0; i < 360; ++i) {
+            const double a = 2 * std::numbers::pi * i / 360;
+            rings[0].push_back(texel * (off + 4.5 * Vec2(std::cos(a), std::sin(a))));
+            rings[1].push_back(texel * (off + 1.5 * Vec2(std::cos(a), -std::sin(a))));
+        }
+        Document p(model());
+        p.paint(fill_of_area(area(rings)));
+        const double film = p.materials().ink("carbon").strength();
+        EXPECT_NEAR(total(p) / (film * std::numbers::pi * (4.5 * 4.5 - 1.5 * 1.5) * texel * texel), 1, 0.01);
+        EXPECT_LT(at(p, texel * off.x, -texel * off.y), 0.05 * film) << "the hole is open";
+        for (int k = 0; k < 16; ++k) {
+            const double a = std::numbers::pi * k / 8;
+            // The middle of the line, from the nearest texel's centre: 0.7 texels off at most.
+            EXPECT_GT(at(p, texel * (off.x + 3 * std::cos(a)), -texel * (off.y + 3 * std::sin(a))), 0.8 * film);
+            EXPECT_LT(at(p, texel * (off.x + 6.2 * std::cos(a)), -texel * (off.y + 6.2 * std::sin(a))), 0.01 * film);
+        }
+    }
+}
+
 TEST(Area, TheRuleSaysWhatCrossingRingsEnclose) {
     const std::vector<Ring> rings{box(-0.01, -0.01, 0.01, 0.01), box(-0.005, -0.005, 0.005, 0.005)};
     FlatArea a = area(rings);

@@ -75,5 +75,14 @@ TEST(Bend, AreasStencilsAndOutlinesFollowTheArc) {
     EXPECT_NEAR(trace.samples[0].tilt.y, -0.1 * std::sin(0.2), kRound);
 }
 
+TEST(Bend, EndsLapAndTheRestStays) {
+    std::vector<std::vector<Vec2>> rings{{{-0.03, 0}, {0.03, -0.01}, {0.029, 0.01}}};
+    lap_ends(rings, 0.03, 1e-4);
+    EXPECT_NEAR(rings[0][0].x, -0.0301, kRound);
+    EXPECT_NEAR(rings[0][1].x, 0.0301, kRound);
+    EXPECT_EQ(rings[0][2].x, 0.029);
+    EXPECT_EQ(rings[0][1].y, -0.01);
+}
+
 }  // namespace
 }  // namespace tuft::stroke

@@ -30,6 +30,13 @@ bool is_flat(double curvature, double width) {
 
 }  // namespace
 
+void lap_ends(std::vector<std::vector<Vec2>>& rings, double half, double lap) {
+    constexpr double kAtEnd = 1e-6;  // of the half width: rounding of drawings
+    for (auto& ring : rings)
+        for (Vec2& p : ring)
+            if (std::abs(std::abs(p.x) - half) < kAtEnd * half) p.x += p.x > 0 ? lap : -lap;
+}
+
 Vec2 bend_point(const Vec2& p, double curvature) {
     const double angle = p.x * curvature;
     // sin(a)/κ and (cos(a) − 1)/κ without a loss of digits where κ is small.

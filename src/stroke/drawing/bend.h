@@ -20,4 +20,8 @@ void bend_samples(StrokeSamples& trace, double curvature, double width);
 /// Bends the rings of an area in the same manner; its bounds become those of the rings. Its gradient does not bend.
 void bend_area(FlatArea& area, double curvature, double width);
 
+/// Moves the points of rings at x = ± `half` outwards by `lap`, metres. Neighbours that meet at a line share its texels
+/// by parts; where they lap by a texel, no line shows.
+void lap_ends(std::vector<std::vector<Vec2>>& rings, double half, double lap);
+
 }  // namespace tuft::stroke
