@@ -52,8 +52,9 @@ Mark paint_line(const Model& model, const std::string& substrate, const std::str
     return mark_of(painting, -6e-3, 6e-3);
 }
 
-// The sheet's texels are 0.06 and 0.24 mm: the coarse ones show neither hair nor strands. Two flanks of 12 mm with cells
-// of 3 mm leave the mean width of 3.4 mm a standard deviation of 0.8 %; that it has no bias is tested with the outlines.
+// The sheet's texels are 0.06 and 0.24 mm: the coarse ones show neither hair nor strands. Two flanks of 12 mm with
+// cells of 3 mm leave the mean width of 3.4 mm a standard deviation of 0.8 %; that it has no bias is tested with the
+// outlines.
 TEST(WetEdge, AtArmsLengthNothingChanges) {
     const Model fine = sheet(), coarse = sheet({}, 256);
     for (const std::string substrate : {"porcelain", "rice-paper"}) {

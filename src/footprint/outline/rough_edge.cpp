@@ -18,7 +18,7 @@ constexpr double kCoarse = 0.1e-3;                // metres: D of coarser hair
 constexpr double kGrain = 0.35, kFilm = 10e-6;    // of the length of the grain; metres of ink that drown it
 constexpr double kLeastGrain = 4e-6;              // metres: G below which the grain is left out
 constexpr double kFull = 0.5, kGone = 1.25;       // cells over the detail's size between which it vanishes
-constexpr double kNarrow = 8;                     // spacings: width of a mark from which its edge is fully rough
+constexpr double kNarrow = 16;                    // spacings: width of a mark from which its edge is fully rough
 constexpr int kMostPoints = 48;                   // of one span of the spline
 
 /// Noise in [−1, 1] with cells of one unit, blended by 3f² − 2f³.

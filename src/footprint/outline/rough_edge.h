@@ -22,7 +22,7 @@
 /// + 10 µm), with length l and rms height ζ of the grain. The mean of δ is 0.
 ///
 /// w falls from 1 to 0 where a cell grows from half of the spacing to 1.25 of it, w' likewise against l: detail below a
-/// texel vanishes. In marks narrower than eight hairs δ is reduced in proportion.
+/// texel vanishes. In marks narrower than sixteen hairs δ is reduced in proportion.
 namespace tuft::footprint {
 
 /// Hair at the edge, and its motion.
