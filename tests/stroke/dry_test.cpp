@@ -46,8 +46,9 @@ double apart(const Document& a, const Document& b) {
 TEST(DryBrush, AFullOneClosesWhateverItsHair) {
     const Model model = sheet();
     const DryStroke a(model, 1, 1), b(model, 1, 2);
-    // The shape is the outline's; only how much each bundle gives differs, and so the film by a little.
-    EXPECT_LT(apart(a, b), 0.005);
+    // The shape is the outline's. How much each bundle gives differs, and so the film by a little; and which hair lies
+    // at the edge: two edges of 0.04 mm rms are 0.045 mm apart in the mean, on both sides of 4 mm 2.2 %.
+    EXPECT_LT(apart(a, b), 0.03);
 }
 
 TEST(DryBrush, LessInkLeavesMoreWhite) {

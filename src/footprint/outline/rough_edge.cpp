@@ -13,11 +13,12 @@ constexpr double kRun = 3e-3, kFineRun = 0.8e-3;  // metres along the path over 
 constexpr double kEndRun = 2e-3;                  // over which a hair's own end changes
 constexpr double kFlank = 0.8, kFineFlank = 0.5;  // A: of the spacing
 constexpr double kEnd = 1.5;                      // B: of the spacing
+constexpr double kOfFlank = 0.05;                 // (n·t)² up to which an edge is all flank
 constexpr double kCoarse = 0.1e-3;                // metres: D of coarser hair
 constexpr double kGrain = 0.35, kFilm = 10e-6;    // of the length of the grain; metres of ink that drown it
 constexpr double kLeastGrain = 4e-6;              // metres: G below which the grain is left out
 constexpr double kFull = 0.5, kGone = 1.25;       // cells over the detail's size between which it vanishes
-constexpr double kNarrow = 8;                     // spacings: width of a mark from which its edge is fully rough
+constexpr double kNarrow = 16;                    // spacings: width of a mark from which its edge is fully rough
 constexpr int kMostPoints = 48;                   // of one span of the spline
 
 /// Noise in [−1, 1] with cells of one unit, blended by 3f² − 2f³.
@@ -59,8 +60,9 @@ class Displacement {
             const double x = (h.direction.x * d.y - h.direction.y * d.x) / h.spacing;
             const double s = h.travel + glm::dot(h.direction, d), along = glm::dot(normal, h.direction);
             out += hair_ *
-                   (kFlank * plane_noise(x, s / kRun, h.seed) + kFineFlank * plane_noise(x, s / kFineRun, h.seed + 1) +
-                    kEnd * along * along * plane_noise(x, s / kEndRun, h.seed + 2));
+                   (kFlank * plane_noise(x, s / kRun, h.seed) + kFineFlank * plane_noise(x, s / kFineRun, h.seed + 1));
+            if (const double end = along * along - kOfFlank; end > 0)
+                out += hair_ * kEnd * end / (1 - kOfFlank) * plane_noise(x, s / kEndRun, h.seed + 2);
         }
         if (grain_ > 0) {
             const Vec3 q = plane_.frame.to_world(Vec3(p, 0)) / (2 * edge_.grain.length);
@@ -123,7 +125,7 @@ void roughen(Polygon& curve, const Displacement& displacement, double scale) {
 Footprint rasterise(std::span<const Outline> outlines, const PicturePlane& plane, const RoughEdge& edge) {
     const Displacement displacement(plane, edge);
     if (displacement.none()) return rasterise(outlines, plane.frame, plane.triangle, plane.cell);
-    const double step = 1.5 * plane.cell;
+    const double step = 2 * plane.cell;
     std::vector<Polygon> curves;
     curves.reserve(outlines.size());
     for (const Outline& outline : outlines) {

@@ -11,18 +11,18 @@
 ///
 /// Each point of an outline moves along its outward unit normal n by
 ///
-///     δ = w D (A h(x, s) + B (n·t)² k(x, s)) + w' G r(P),   D = min(d, 0.1 mm),
+///     δ = w D (A h(x, s) + B c k(x, s)) + w' G r(P),   D = min(d, 0.1 mm),
 ///
 /// x = t × (p − foot) / d, the number of hairs beside the hand's path, s = travel + t · (p − foot), the place along it,
 /// t the unit direction of the hand. While the hand goes straight on, x and s of a place on the surface do not change,
 /// so the edge that the stamps leave together is the displaced edge. h and k are value noise with cells of one hair
 /// across, 3 and 0.8 mm along for h: at the flanks the edge goes from hair to hair; at the ends, where n lies along t,
-/// each hair ends by itself. Ends of coarse bristles are split, so that they move the edge by no more than D. r is the
-/// substrate's grain at P in space, of unit rms. Its amplitude is G = 0.35 l ζ / (ζ
+/// each hair ends by itself. c is ⟨(n·t)² − 0.05⟩ / 0.95. Ends of coarse bristles are split, so that they move the edge
+/// by no more than D. r is the substrate's grain at P in space, of unit rms. Its amplitude is G = 0.35 l ζ / (ζ
 /// + 10 µm), with length l and rms height ζ of the grain. The mean of δ is 0.
 ///
 /// w falls from 1 to 0 where a cell grows from half of the spacing to 1.25 of it, w' likewise against l: detail below a
-/// texel vanishes. In marks narrower than eight hairs δ is reduced in proportion.
+/// texel vanishes. In marks narrower than sixteen hairs δ is reduced in proportion.
 namespace tuft::footprint {
 
 /// Hair at the edge, and its motion.
@@ -46,7 +46,7 @@ struct RoughEdge {
 };
 
 /// Returns the union of the outlines with rough edges as a picture; see `rasterise` (outline.h). For a smooth edge it
-/// is that picture, to the bit. Cost: about 15 ns a point, a point each 1.5 cells of the edge.
+/// is that picture, to the bit. Cost: about 15 ns a point, a point each texel of the edge.
 Footprint rasterise(std::span<const Outline> outlines, const PicturePlane& plane, const RoughEdge& edge);
 
 }  // namespace tuft::footprint
