@@ -332,6 +332,8 @@ void find_frame(const Step& w, const std::vector<std::vector<NodeContact>>& cont
         if (middle.triangle != kNone) at = middle;
     }
     result.triangle = at.triangle;
+    // Along the ferrule, not along an axis of space: the footprint's picture turns with the hand.
+    if (!memory.touching) memory.heading = w.pose.rotation * Vec3{1, 0, 0};
     result.frame = make_frame(at.plane.origin, at.plane.normal, memory.heading);
     memory.heading = result.frame.t;
     memory.origin = result.frame.origin;

@@ -86,6 +86,17 @@ TEST(PlasticRod, SmallDeflectionsAgreeWithLinearTheory) {
     }
 }
 
+TEST(PlasticRod, SetOfAUniformCantileverFollowsTheClosedForm) {
+    // w/w_e = (5 − (3 + p) √(3 − 2p))/p² at p times the yield load, of which p w_e is elastic. Near p = 1.5 the clamp
+    // becomes a hinge and the set grows without bound. Joints and 16 fibres are good to 1.3 %.
+    constexpr double kYield = 1e-3;  // M_e0 L/B0: geometry is linear to 1e-6
+    const Profile uniform{0, 0, kYield, 0};
+    for (const double p : {1.2, 1.3, 1.4, 1.43, 1.45, 1.47}) {
+        const double set = ((5 - (3 + p) * std::sqrt(3 - 2 * p)) / (p * p) - p) * kYield / 3;
+        EXPECT_NEAR(load_and_unload(uniform, 16, p * kYield).unloaded.dy, set, 0.02 * set) << p;
+    }
+}
+
 TEST(PlasticRod, NoSetBelowTheYieldMomentAndNeverMoreThanTheLoadedBend) {
     const Profile profile{-1, -0.8, 0.5, -1};
     const double limit = elastic_limit_load(profile);

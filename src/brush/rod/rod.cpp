@@ -31,7 +31,7 @@ Rod make_rod(const Profile& profile, std::span<const double> lengths) {
     // The clamp joint stands for the half segment beside it, where the moment of a load at
     // the tip is less by a quarter segment's lever; a little less than that, because yielding
     // grows faster than the moment (set within 2 % at 16 segments).
-    if (n > 0) rod.yield[0] /= 1 - 0.225 * rod.length[0];
+    if (n > 0) rod.yield[0] /= 1 - 0.2 * rod.length[0];
     rod.buckling = buckling_load(rod);
     return rod;
 }
