@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -59,85 +58,109 @@ struct Timeline {
 /// Camera, paint and picture of the frames; draws one after the other.
 class Camera {
   public:
-    /// `lit`: the finished work. All must outlive it.
-    Camera(const Film& a, stroke::Document& painting, const PictureLook& lit, Console& console)
+    /// All must outlive it.
+    Camera(const Film& a, stroke::Document& painting, Console& console)
         : film_(a),
           painting_(painting),
           model_(painting.model()),
-          lit_(lit),
           path_(camera_path(a.camera, a.replay.view, model_)),
           options_(picture_options(a.replay.view, model_)),
-          progress_(console.progress()) {
+          progress_(console.progress()),
+          shown_(make_look(model_, &painting, "", false)) {
         options_.progress = [this](std::string_view, double) { return go_on(); };
-        const stroke::Appearance& appearance = painting.appearance();
-        shown_.appearance = lit.appearance;
-        shown_.colour = ink::compose_linear(appearance.stack(), model_.texels, appearance.substrate(),
-                                            appearance.compose_options());
-        if (film_.replay.view.raking)
-            shown_.height = {shown_.colour.size, 1, std::vector<float>(lit.height.texels.size())};
-        shown_.point_to_maps(model_);
+        compose_all();
     }
 
     /// Returns the frame at `part` of the film, with the brush of the stroke in work; null: without one.
     const render::Image& shoot(double part, const stroke::StrokeSession* session) {
         part_ = part;
         take_changes();
-        return draw(part, session);
+        return draw(session);
     }
-    /// Returns the frame of the finished work.
+    /// Returns the frame of the finished work, in its own light: the picture of `tuft render`.
     const render::Image& shoot_finished() {
         part_ = 1;
-        const stroke::Appearance& appearance = painting_.appearance();
-        ink::AtlasMap<float> whole = ink::compose_linear(appearance.stack(), model_.texels, appearance.substrate(),
-                                                         appearance.compose_options());
-        add_differences(whole);
-        shown_.colour = std::move(whole);
-        shown_.height = lit_.height;
-        shown_.point_to_maps(model_);
-        return draw(1, nullptr);
+        compose_all();
+        series_.reset();
+        return draw(nullptr);
     }
     /// Reports; false: stop.
     bool go_on() const { return !progress_ || progress_("film", part_); }
 
   private:
+    void compose_all() {
+        const stroke::Appearance& appearance = painting_.appearance();
+        shown_.colour = ink::compose_linear(appearance.stack(), model_.texels, appearance.substrate(),
+                                            appearance.compose_options());
+        compose_relief();
+        shown_.point_to_maps(model_);
+    }
+
+    void compose_relief() {
+        if (!film_.replay.view.raking) return;
+        const stroke::Appearance& appearance = painting_.appearance();
+        shown_.height = ink::compose_height(appearance.stack(), model_.texels, appearance.compose_options());
+        for (float& h : shown_.height.texels) h *= 1e-6f;
+    }
+
     void take_changes() {
         stroke::Appearance& appearance = painting_.appearance();
         const std::vector<std::uint32_t> slots = appearance.take_dirty();
         if (slots.empty()) return;
         const ink::ComposeOptions compose = appearance.compose_options();
         ink::refresh_linear(shown_.colour, slots, appearance.stack(), model_.texels, appearance.substrate(), compose);
-        const std::vector<std::uint32_t> tiles = ink::refreshed_tiles(slots, model_.texels, compose);
-        changed_.insert(changed_.end(), tiles.begin(), tiles.end());
-        if (!film_.replay.view.raking) return;
-        shown_.height = ink::compose_height(appearance.stack(), model_.texels, compose);
-        for (float& h : shown_.height.texels) h *= 1e-6f;
+        changed_ = ink::refreshed_tiles(slots, model_.texels, compose);
+        compose_relief();
         shown_.point_to_maps(model_);
+        for (const std::uint32_t tile : changed_) note_difference(tile);
     }
 
-    void add_differences(const ink::AtlasMap<float>& whole) {
-        const std::size_t size = whole.size, row = 3 * size, per_side = model_.texels.tiles_per_side;
-        for (std::size_t y = 0; y < size; ++y)
-            for (std::size_t tile = 0; tile < per_side; ++tile) {
-                const std::size_t first = y * row + tile * 3 * atlas::kTile,
-                                  n = std::min<std::size_t>(3 * atlas::kTile, (y + 1) * row - first);
-                if (std::memcmp(&whole.texels[first], &shown_.colour.texels[first], n * sizeof(float)) != 0)
-                    changed_.push_back(static_cast<std::uint32_t>(y / atlas::kTile * per_side + tile));
-            }
+    /// Sums how far the paint on a tile is from that which the light is thrown back by.
+    void note_difference(std::uint32_t tile) {
+        if (lit_.colour.texels.empty()) return;
+        const std::size_t size = shown_.colour.size, per_side = model_.texels.tiles_per_side;
+        const std::size_t x0 = tile % per_side * atlas::kTile, y0 = tile / per_side * atlas::kTile;
+        const std::size_t x1 = std::min(x0 + atlas::kTile, size), y1 = std::min(y0 + atlas::kTile, size);
+        double sum = 0;
+        for (std::size_t y = y0; y < y1; ++y)
+            for (std::size_t i = 3 * (y * size + x0); i < 3 * (y * size + x1); ++i)
+                sum += double{std::abs(shown_.colour.texels[i] - lit_.colour.texels[i])};
+        difference_ += sum - std::exchange(of_tile_[tile], sum);
     }
 
-    const render::Image& draw(double part, const stroke::StrokeSession* session) {
-        const mesh::TriangleMesh& mesh = *model_.mesh;
-        const render::View view = render::view_at(path_, part, options_.width, options_.height, mesh.positions);
-        if (!series_ || !(view == options_.view)) {
-            options_.view = view;
-            const bool moves = path_.size() > 1;
-            series_ = std::make_unique<render::PictureSeries>(mesh, *model_.query, lit_.appearance, options_,
-                                                              moves && !stands_after(part, view)
-                                                                  ? render::PictureSeries::Length::one
-                                                                  : render::PictureSeries::Length::many);
-        }
-        std::sort(changed_.begin(), changed_.end());
-        changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
+    /// Whether the light is that of paint too far from what is seen: a whole wash changes it, strokes do not.
+    bool needs_light() const {
+        constexpr double kMost = 0.02;  // mean reflectance, of the tiles of charts
+        const double channels = 3.0 * atlas::kTileTexels * static_cast<double>(model_.texels.n_slots());
+        return !series_ || difference_ > kMost * channels;
+    }
+
+    void find_light() {
+        series_.reset();
+        lit_ = shown_;
+        lit_.point_to_maps(model_);
+        of_tile_.assign(model_.texels.slot_of_tile.size(), 0);
+        difference_ = 0;
+        series_ = std::make_unique<render::PictureSeries>(
+            *model_.mesh, *model_.query, lit_.appearance, options_,
+            stands_after() ? render::PictureSeries::Length::many : render::PictureSeries::Length::one);
+    }
+
+    render::View view_at(double part) const {
+        return render::view_at(path_, part, options_.width, options_.height, model_.mesh->positions);
+    }
+
+    /// Whether the camera still has this view a little later.
+    bool stands_after() const {
+        constexpr double kLater = 1e-3;
+        return view_at(std::min(1.0, part_ + kLater)) == options_.view;
+    }
+
+    const render::Image& draw(const stroke::StrokeSession* session) {
+        const render::View view = view_at(part_);
+        const bool moved = !(view == options_.view);
+        options_.view = view;
+        if (moved || needs_light()) find_light();
         const render::Image& picture = series_->draw(shown_.appearance, changed_);
         changed_.clear();
         if (!session || film_.no_brush) return picture;
@@ -148,23 +171,17 @@ class Camera {
         return frame_;
     }
 
-    /// Whether the camera still has this view a little later.
-    bool stands_after(double part, const render::View& view) const {
-        constexpr double kLater = 1e-3;
-        return render::view_at(path_, std::min(1.0, part + kLater), options_.width, options_.height,
-                               model_.mesh->positions) == view;
-    }
-
     const Film& film_;
     stroke::Document& painting_;
     const stroke::Model& model_;
-    const PictureLook& lit_;
     render::CameraPath path_;
     render::PictureOptions options_;
     ProgressFn progress_;
     double part_ = 0;
-    PictureLook shown_;
+    PictureLook shown_, lit_;             ///< paint that is seen, and that throws the light back
     std::vector<std::uint32_t> changed_;  ///< tiles, since the last picture
+    std::vector<double> of_tile_;         ///< difference of both, by tile
+    double difference_ = 0;
     std::unique_ptr<render::PictureSeries> series_;
     render::Image frame_;
 };
@@ -208,30 +225,13 @@ void shoot(std::vector<stroke::JournalEntry> entries, const Timeline& timeline, 
     for (int k = 0; k <= timeline.still; ++k) sink.add(view_of(finished));
 }
 
-/// Throws where nothing of the painting is seen.
-void check_painted(const Film& a, const stroke::Document& finished) {
-    if (finished.appearance().stack().layers.empty() || finished.layers().pigments().empty())
+void check_painted(const Film& a, const std::vector<stroke::JournalEntry>& entries) {
+    const auto paints = [](const stroke::JournalEntry& entry) {
+        return !entry.hidden && !stroke::on_palette(entry) &&
+               (entry.as<stroke::PaintStroke>() || entry.as<stroke::Fill>());
+    };
+    if (std::none_of(entries.begin(), entries.end(), paints))
         throw Error(a.replay.project.string(), "nothing is painted: there is nothing to film");
-}
-
-/// Whether the project's stored texels are what is filmed.
-bool films_stored_work(const Replay& a) {
-    return a.model.empty() && a.brush.empty() && a.ink.empty() && a.surface.atlas_size == 0 &&
-           a.surface.texel_size_mm == 0 && !a.surface.new_uv && a.surface.seams == "free";
-}
-
-PictureLook look_of_finished(const Film& a, OpenProject& project, const stroke::Model& model, Console& console) {
-    stroke::Document finished(model);
-    if (films_stored_work(a.replay)) {
-        restore(project, finished, console);
-    } else {
-        finished.use(project.substrate);
-        io::use_presets(project.file, finished);
-        finished.replay(replay_strokes(a.replay, project, finished).followed, console.progress());
-    }
-    io::apply_recolouring(project.file, finished);
-    check_painted(a, finished);
-    return make_look(model, &finished, "", a.replay.view.raking);
 }
 
 void print_result(const Film& a, const Timeline& timeline) {
@@ -257,15 +257,14 @@ int run(const Film& a) {
     Console console(a.common.quiet);
     const auto project = open_project(a.replay.project, io::Access::read, console);
     const stroke::Model model = replay_model(a.replay, *project, console);
-    PictureLook lit = look_of_finished(a, *project, model, console);
-    lit.point_to_maps(model);
     stroke::Document painting(model);
     painting.use(project->substrate);
     io::use_presets(project->file, painting);
     io::apply_recolouring(project->file, painting);
     std::vector<stroke::JournalEntry> entries = replay_strokes(a.replay, *project, painting).followed;
+    check_painted(a, entries);
     const Timeline timeline(entries, a);
-    Camera camera(a, painting, lit, console);
+    Camera camera(a, painting, console);
     io::write_film(
         a.output,
         {.width = a.replay.view.width, .height = a.replay.view.height, .frames_per_second = a.frames_per_second},

@@ -91,7 +91,8 @@ std::vector<Filament> load_filaments(const std::filesystem::path& path) {
         reader.only({"name", "colour", "hiding_mm"});
         const std::string hex = reader.text("colour", std::nullopt);
         const std::optional<Rgb> colour = colour_of_hex(hex);
-        if (!colour) reader.fail(reader.line_of("colour"), Message("'{}' is not a colour such as #c03020", hex));
+        const long line = reader.line_of("colour");
+        if (!colour) reader.fail(line, Message("'{}' is not a colour such as #c03020", hex));
         filaments.push_back({.name = reader.text("name", hex),
                              .colour = *colour,
                              .hiding = kMillimetre * reader.number("hiding_mm", 0, 100, 0)});

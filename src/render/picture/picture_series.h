@@ -17,7 +17,8 @@ namespace tuft::render {
 /// the pixels that read one of them are drawn anew. The image is to the bit that of a series which draws it first.
 ///
 /// Light that painted surfaces throw onto others is that of `lit` in every picture: frames do not flicker, and the
-/// frame that shows `lit` is to the bit that of `render_picture`.
+/// frame that shows `lit` is to the bit that of `render_picture`. A caller makes a new series where the paint has gone
+/// far from `lit`.
 class PictureSeries {
   public:
     enum class Length { one, many };  ///< `one` records no reads: half the time and memory of the first picture less
