@@ -177,7 +177,8 @@ class Crew {
 
     bool is_enough(std::size_t task, int status) {
         const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-        const bool killed = signal == 0 || signal == SIGKILL || signal == SIGTERM || signal == SIGHUP || signal == SIGINT;
+        const bool killed =
+            signal == 0 || signal == SIGKILL || signal == SIGTERM || signal == SIGHUP || signal == SIGINT;
         return killed ? ++kills_[task] >= kMostKills : ++crashes_[task] >= kMostCrashes;
     }
 
