@@ -10,6 +10,7 @@ out=${1:-results/compare}
 tuft=${TUFT:-build/release/src/cli/tuft}
 rounds=${ROUNDS:-3}
 mkdir -p "$out"
+out=$(realpath "$out")
 export TUFT_DATA=$PWD
 install_missing blender libmypaint-dev xvfb xauth pkg-config gcc
 read -ra mypaint < <(pkg-config --cflags --libs libmypaint)
@@ -23,7 +24,7 @@ for round in $(seq "$rounds"); do
   for width in 64 256; do
     "$out/mypaint_dabs" $width 4000 >"$out/mypaint-$width-$round.json"
     LIBGL_ALWAYS_SOFTWARE=1 timeout 600 xvfb-run -a -s "-screen 0 1280x1024x24" blender --factory-startup --threads 1 \
-      --python samples/bench/blender_paint.py -- 4096 $width 200 "$PWD/$out/blender-$width-$round.json" \
+      --python samples/bench/blender_paint.py -- 4096 $width 200 "$out/blender-$width-$round.json" \
       >"$out/blender.log" 2>&1 || { tail -n 3 "$out/blender.log" >&2; }
   done
 done

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <ctime>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -68,6 +69,8 @@ void flatten(const json& j, const std::string& path, std::map<std::string, doubl
 }
 
 bool is_time(const std::string& path) {
+    for (const char* count : {"/bands", "/pigments", "/segments", "/spines", "composite_microseconds/texels"})
+        if (path.ends_with(count) && path.find("ns_per_texel") == std::string::npos) return false;
     for (const char* word : {"seconds", "_ms", "ns_per_texel", "_mb"})
         if (path.find(word) != std::string::npos && path.find("per_second") == std::string::npos) return true;
     return false;
@@ -176,10 +179,11 @@ std::vector<NamedPlot> plots_of(const json& j) {
 }
 
 std::string facts_line(const json& j) {
-    return fmt::format("{}, {} cores, {}; tuft {}{}; {} {}; {}", j.value("machine", ""), j.value("cores", 0),
-                       j.value("isa", ""), j.value("version", ""),
-                       j.value("commit", "").empty() ? "" : " " + j.value("commit", ""), j.value("compiler", ""),
-                       j.value("build_type", ""), j.value("date", ""));
+    const std::string commit = j.value("commit", "");
+    return fmt::format("{}, {} cores, {}; tuft {}{}; {} {}; {}, {:.1f} processes at work", j.value("machine", ""),
+                       j.value("cores", 0), j.value("isa", ""), j.value("version", ""),
+                       commit.empty() ? "" : " " + commit, j.value("compiler", ""), j.value("build_type", ""),
+                       j.value("date", ""), j.value("load", 0.0));
 }
 
 std::string ratio_text(const Line& line) {
@@ -244,6 +248,9 @@ void add_facts(json& j) {
     j["commit"] = facts.commit;
     j["compiler"] = facts.compiler;
     j["build_type"] = facts.build_type;
+    double load = 0;
+    ::getloadavg(&load, 1);
+    j["load"] = load;
     j["date"] = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
     for (const auto& [name, version] : facts.libraries) j["libraries"][name] = version;
 }

@@ -25,8 +25,8 @@ std::string head(double width, double height, const std::string& title) {
 
 /// Number of an axis, as short as it can be.
 std::string number(double v) {
-    if (std::abs(v) >= 1e6) return fmt::format("{:g} M", v / 1e6);
-    if (std::abs(v) >= 1e4) return fmt::format("{:g} k", v / 1e3);
+    if (std::abs(v) >= 999'500) return fmt::format("{:.3g} M", v / 1e6);
+    if (std::abs(v) >= 1e4) return fmt::format("{:.3g} k", v / 1e3);
     return fmt::format("{:.6g}", v);
 }
 
@@ -54,9 +54,15 @@ Axis make_axis(const std::vector<double>& values, bool log, bool from_zero) {
     if (log) {
         axis.lo = *lo / 1.15;
         axis.hi = *hi * 1.15;
-        for (double ten = std::pow(10, std::floor(std::log10(axis.lo))); ten <= axis.hi; ten *= 10)
-            for (const double step : {1.0, 2.0, 5.0})
-                if (step * ten >= axis.lo && step * ten <= axis.hi) axis.ticks.push_back(step * ten);
+        for (const bool all : {false, true}) {  // 1, 2, 5, or every digit where these are too few
+            axis.ticks.clear();
+            for (double ten = std::pow(10, std::floor(std::log10(axis.lo))); ten <= axis.hi; ten *= 10)
+                for (int digit = 1; digit < 10; ++digit)
+                    if ((all || digit == 1 || digit == 2 || digit == 5) && digit * ten >= axis.lo &&
+                        digit * ten <= axis.hi)
+                        axis.ticks.push_back(digit * ten);
+            if (axis.ticks.size() >= 3) break;
+        }
         return axis;
     }
     const double from = from_zero ? std::min(0.0, *lo) : *lo;

@@ -23,7 +23,9 @@
 namespace tuft::variants {
 namespace {
 
-constexpr int kMostEnds = 5;  // workers that one task may end
+constexpr int kMostCrashes = 5;  // workers that one task may end
+constexpr int kMostKills = 100;  // workers that others may end at one task; for want of memory the system does, too
+constexpr int kMostIdleEnds = 5;
 constexpr int kPollMs = 100;
 constexpr std::size_t kLongestLine = 100;  // bytes
 
@@ -163,23 +165,29 @@ class Crew {
         workers_.erase(worker);
         if (WIFEXITED(status) && !task) return;  // it found nothing more to do
         ++report_.ended;
-        if (!task && ++without_task_ > kMostEnds)
+        if (!task && ++without_task_ > kMostIdleEnds)
             throw Error(fmt::format("workers end at once, with {}; try 'tuft run-task {} 0'", end_of(status),
                                     jobs_.folder().string()));
-        if (task && jobs_.state(*task) == State::open && ++ends_[*task] >= kMostEnds) {
-            jobs_.store_failure(*task,
-                                fmt::format("{} workers ended at it, the last with {}", kMostEnds, end_of(status)));
+        if (task && jobs_.state(*task) == State::open && is_enough(*task, status)) {
+            jobs_.store_failure(*task, fmt::format("its workers end each time, the last with {}", end_of(status)));
             ++report_.failed;
         }
         workers_.emplace_back(options_.command);
     }
 
+    bool is_enough(std::size_t task, int status) {
+        const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+        const bool killed =
+            signal == 0 || signal == SIGKILL || signal == SIGTERM || signal == SIGHUP || signal == SIGINT;
+        return killed ? ++kills_[task] >= kMostKills : ++crashes_[task] >= kMostCrashes;
+    }
+
     const Jobs& jobs_;
     const WorkerOptions& options_;
     std::list<Worker> workers_;
-    std::map<std::size_t, int> ends_;  // by task
-    int without_task_ = 0;             // workers that ended before they began a task, one after the other
-    std::size_t open_ = 0;             // tasks at the start
+    std::map<std::size_t, int> crashes_, kills_;  // by task
+    int without_task_ = 0;                        // workers that ended before they began a task, one after the other
+    std::size_t open_ = 0;                        // tasks at the start
     WorkersReport report_;
 };
 

@@ -29,8 +29,8 @@ struct WorkersReport {
 };
 
 /// Runs the open tasks of `jobs` by worker processes until none is left. A worker that ends early is replaced; a task
-/// at which five ended is marked as failed. Throws `Cancelled` when `progress` stops it, and `Error` where workers
-/// cannot be started; the workers are ended first.
+/// at which five crashed, or a hundred were killed, is marked as failed. Throws `Cancelled` when `progress` stops it,
+/// and `Error` where workers cannot be started; the workers are ended first.
 WorkersReport run_workers(const Jobs& jobs, const WorkerOptions& options);
 
 /// Runs every open task that no other process has, in order, as a worker: with reports where `reports`. Returns how

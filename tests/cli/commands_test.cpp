@@ -630,5 +630,21 @@ TEST_F(Commands, UvsOnSeveralPagesAreKept) {
     EXPECT_FALSE(std::filesystem::exists(path("g.obj")));
 }
 
+TEST_F(Commands, AReportOfTheBenchmarkIsRefusedBeforeItMeasures) {
+    write("other.json", "{\"format\": \"tuft variants 1\"}");
+    write("deep.json", std::string(5000, '['));
+    for (const auto& [arguments, status] :
+         std::vector<std::pair<std::string, int>>{{"--report " + path("a.txt"), 2},
+                                                  {"--report " + path("none/a.html"), 1},
+                                                  {"--report " + path("a.md") + " --against " + path("none.json"), 1},
+                                                  {"--report " + path("a.md") + " --against " + path("other.json"), 1},
+                                                  {"--report " + path("a.md") + " --against " + path("deep.json"), 1},
+                                                  {"--against " + path("other.json"), 2}}) {
+        const Ran ran = tuft("bench --quick " + arguments);
+        EXPECT_EQ(ran.status, status) << arguments << ran.err;
+        EXPECT_EQ(ran.error_lines(), 1) << ran.err;
+    }
+}
+
 }  // namespace
 }  // namespace tuft::test
