@@ -3,8 +3,8 @@
 #include <filesystem>
 
 /// \file
-/// Why a path cannot be used: not every file that cannot be found is missing. Called where a file or an output folder is
-/// named by a person.
+/// Why a path cannot be used: not every file that cannot be found is missing. Called where a file or an output folder
+/// is named by a person.
 namespace tuft {
 
 /// Throws `Error` where `path` leads to nothing: "no such file", or what the system says, such as of a loop of symbolic

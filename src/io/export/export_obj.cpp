@@ -202,7 +202,8 @@ std::vector<std::string> write_library(const std::filesystem::path& path, const 
         if (map.page > 0 || !used) continue;
         const std::string file = scene.udims.size() == 1 ? map.file : scene.name + "_" + map.kind + ".<UDIM>.png";
         if (map.kind == "base_colour") mtl += "map_Kd " + file + "\n";
-        if (map.kind == "normal") mtl += "norm " + file + "\nmap_Bump -bm 1 " + file + "\n";  // Blender reads the second
+        if (map.kind == "normal")
+            mtl += "norm " + file + "\nmap_Bump -bm 1 " + file + "\n";  // Blender reads the second
     }
     try {
         const json document = parse_document(scene.source);
