@@ -12,6 +12,7 @@
 #include <span>
 
 #include "cli/drawing.h"
+#include "core/system/path_fault.h"
 #include "core/text/units.h"
 #include "ink/composite/composite.h"
 #include "ink/composite/match.h"
@@ -140,8 +141,7 @@ void check_output(const fs::path& path) {
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     std::error_code ec;
     if (fs::is_directory(path, ec)) throw Error(path.string(), "is a folder, not a file to write");
-    if (!fs::is_directory(folder, ec))
-        throw Error(path.string(), Message("the output folder '{}' does not exist", folder.string()));
+    check_output_folder(path);
     if (::access(folder.c_str(), W_OK) != 0)
         throw Error(path.string(), Message("the output folder '{}' cannot be written to", folder.string()));
 }

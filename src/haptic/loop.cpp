@@ -113,6 +113,8 @@ struct Loop::State {
 
     State(Device& d, HairSolver s, const LoopOptions& o) : device(d), solver(std::move(s)), options(o), servo(o.law) {}
     void run_servo();
+    void report(LoopStatus& now, const ServoOutput& out, const RootPose& asked, const DeviceState* state);
+    void remember_force(const Vec3& force);
     void run_solver();
     void run_record();
     void drain_record();
@@ -126,6 +128,34 @@ bool Loop::State::wait_for_answer(std::uint64_t tick, std::int64_t until, HairAn
         if (any && newest.pose.tick == tick) return true;
         if (!answered.wait_until(until)) return false;
     }
+}
+
+// What a period did, for those who watch the loop.
+void Loop::State::report(LoopStatus& now, const ServoOutput& out, const RootPose& asked, const DeviceState* state) {
+    now.engaged = out.engaged;
+    now.hard = out.hard;
+    now.fault = out.fault;
+    now.pass = out.pass;
+    now.force = out.force;
+    now.root = out.root;
+    now.rotation = asked.rotation;
+    now.arm = out.arm;
+    now.device = out.device;
+    if (state) {
+        now.grip = state->rotation;
+        now.buttons = state->buttons;
+    }
+    ++now.periods;
+    now.realtime = with_priority.load() == 2;
+    now.lost_poses = solved.overflow();
+    now.unconverged = unconverged.load(std::memory_order_relaxed);
+    status.write(now);
+}
+
+void Loop::State::remember_force(const Vec3& force) {
+    const std::uint64_t n = n_recent.load(std::memory_order_relaxed);
+    recent[n % kRecent].store(static_cast<float>(glm::length(force)), std::memory_order_relaxed);
+    n_recent.store(n + 1, std::memory_order_release);
 }
 
 void Loop::State::run_servo() {
@@ -161,28 +191,9 @@ void Loop::State::run_servo() {
         const ServoOutput out = servo.finish(any ? &newest : nullptr);
         device.send(out.command);
         now.cycle.add(1e-9 * static_cast<double>(now_ns() - due));
-        now.engaged = out.engaged;
-        now.hard = out.hard;
-        now.fault = out.fault;
-        now.pass = out.pass;
-        now.force = out.force;
-        now.root = out.root;
-        now.rotation = asked.rotation;
-        now.arm = out.arm;
-        now.device = out.device;
-        if (fresh) {
-            now.grip = state.rotation;
-            now.buttons = state.buttons;
-        }
-        ++now.periods;
-        now.realtime = with_priority.load() == 2;
-        now.lost_poses = solved.overflow();
-        now.unconverged = unconverged.load(std::memory_order_relaxed);
         now.allocations = allocations() - allocated;
-        status.write(now);
-        const std::uint64_t n = n_recent.load(std::memory_order_relaxed);
-        recent[n % kRecent].store(static_cast<float>(glm::length(out.force)), std::memory_order_relaxed);
-        n_recent.store(n + 1, std::memory_order_release);
+        report(now, out, asked, fresh ? &state : nullptr);
+        remember_force(out.force);
         if (options.record) {
             ServoControl done = wanted;
             done.clutched = servo.clutched();

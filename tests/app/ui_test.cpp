@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -218,6 +219,53 @@ TEST(ChineseFont, IsFoundByItsNameTheBestOneFirst) {
     EXPECT_EQ(find_chinese_font({{"DejaVuSans.ttf", "a"}, {"SarasaGothicCJK-Light.ttc", "s"}}), "s")
         << "one that is not known";
     EXPECT_EQ(find_chinese_font({{"README-CJK.txt", "t"}}), "");
+}
+
+// A frame that shows a text, as a list of files shows names.
+bool lacks_after_drawing(Ui& ui, const std::string& text) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.DisplaySize = {800, 600};
+    io.IniFilename = nullptr;
+    ImGui::NewFrame();
+    ImGui::SetNextWindowSize({700, 500});
+    ImGui::Begin("Names");
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::End();
+    ImGui::Render();
+    return ui.lacks_characters(*ImGui::GetDrawData());
+}
+
+// Whether each character of a text in UTF-8, of at most three bytes each, has a picture in the font.
+bool has_glyphs(const std::string& text) {
+    ImWchar characters[64];
+    const int n = ImTextStrFromUtf8(characters, 64, text.c_str(), nullptr);
+    const ImFont* font = ImGui::GetIO().Fonts->Fonts[0];
+    return std::all_of(characters, characters + n, [&](ImWchar c) {
+        const ImFontGlyph* glyph = font->FindGlyphNoFallback(c);
+        return glyph && glyph->U0 < 1;  // a placeholder's coordinate is larger
+    });
+}
+
+// U+9F98 and U+72C3 are not among the 2500 common characters.
+TEST(UiFont, GetsTheCharactersThatAreShownInEachLanguage) {
+    const std::string names = "\xe9\x9d\x92\xe8\x8a\xb1 \xe9\xbe\x98\xe7\x8b\x83.glb \xe3\x83\x84 \xd0\x96";
+    ImGui::CreateContext();
+    Ui ui;
+    ui.prepare({});
+    if (ui.has_chinese) {
+        EXPECT_FALSE(lacks_after_drawing(ui, "Plain names? 100 %.glb")) << "a question mark is one";
+        EXPECT_FALSE(has_glyphs(names));
+        EXPECT_TRUE(lacks_after_drawing(ui, names));
+        ui.prepare({});
+        EXPECT_TRUE(has_glyphs(names));
+        EXPECT_FALSE(lacks_after_drawing(ui, names));
+    }
+    // No font has U+1A1E, Buginese: it is asked for once.
+    ui.prepare({});
+    lacks_after_drawing(ui, "\xe1\xa8\x9e");
+    ui.prepare({});
+    EXPECT_FALSE(lacks_after_drawing(ui, "\xe1\xa8\x9e"));
+    ImGui::DestroyContext();
 }
 
 std::string chinese(const Message& message) {

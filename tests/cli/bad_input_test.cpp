@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <vector>
 
 #include "program.h"
@@ -41,6 +42,18 @@ std::string binary_stl(std::uint32_t triangles, std::size_t bytes) {
 
 TEST_F(BadInput, MissingModel) {
     expect_refused("inspect " + path("none.ply"), 1, "no such file");
+}
+
+// What cannot be found for another reason is not called missing.
+TEST_F(BadInput, PathsThatLeadNowhereSayWhy) {
+    std::filesystem::create_symlink("loop.ply", path("loop.ply"));
+    write("plain", "x");
+    const std::string deep = std::string(300, 'a') + ".ply";
+    expect_refused("inspect " + path("loop.ply"), 1, "symbolic links");
+    expect_refused("inspect " + path("plain/x.ply"), 1, "Not a directory");
+    expect_refused("inspect " + path(deep), 1, "too long");
+    expect_refused("render " + sheet() + " -o " + path("loop.ply/x.png"), 1, "symbolic links");
+    expect_refused("render " + sheet() + " -o " + path("plain/x.png"), 1, "Not a directory");
 }
 
 // The options of a command are in its own help.

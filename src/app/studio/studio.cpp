@@ -289,22 +289,9 @@ void Studio::await_ink(double since_last) {
     take_work();
 }
 
-// Of the file, its layers and drawings: an interface in English needs their characters too.
-bool Studio::shows_chinese_names() const {
-    const Session& s = session_;
-    if (!s.paint_thread) return false;
-    const auto is_chinese = [](const std::string& name) { return has_chinese_characters(name); };
-    const std::vector<stroke::Layer>& layers = s.reported.document.layers.layers;
-    return is_chinese(project_name(s.paint_thread.get(), s.reported.file.project)) ||
-           std::any_of(layers.begin(), layers.end(), [&](const stroke::Layer& l) { return is_chinese(l.name); }) ||
-           std::any_of(s.journal.lines.begin(), s.journal.lines.end(),
-                       [&](const StrokeLine& l) { return is_chinese(l.group.name) || is_chinese(l.label); });
-}
-
 void Studio::restyle(int width, int height) {
     Session& s = session_;
     Preferences& p = s.preferences;
-    if (!p.ui.chinese_names && shows_chinese_names()) p.ui.chinese_names = p.restyle = true;
     if (const float scale = scale_for(content_scale_, width, height); !p.ui.own_scale && p.ui.scale != scale) {
         p.ui.scale = scale;
         p.restyle = true;
@@ -348,6 +335,7 @@ void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffe
     scene_.draw(framebuffer, height, input_.turned_within(kTurnPause, now));
     picture_.store(now);
     ImGui::Render();
+    if (s.ui.lacks_characters(*ImGui::GetDrawData())) s.preferences.restyle = true;
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glViewport(0, 0, width, height);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());

@@ -46,7 +46,6 @@ class Studio {
     std::size_t samples() const { return input_.stroke().samples(); }
 
   private:
-    bool shows_chinese_names() const;
     void restyle(int width, int height);
     void layout(int width, int height);
     void draw_panels();

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -134,7 +135,10 @@ std::optional<fs::path> FileDialog::accept() {
         return std::nullopt;
     }
     if (reads()) {
-        if (!fs::exists(path, ec)) return refuse("There is no file of that name."), std::nullopt;
+        if (!fs::exists(path, ec)) {
+            if (!ec || ec.value() == ENOENT) return refuse("There is no file of that name."), std::nullopt;
+            return refuse(Message("This file cannot be read: {}", system_message(ec))), std::nullopt;
+        }
     } else {
         if (!suits(path)) path += name_.extension;
         if (!fs::is_directory(path.parent_path(), ec)) return refuse("There is no folder of that name."), std::nullopt;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "app/text/texts.h"
+#include "app/widgets/missing_characters.h"
 
 namespace fs = std::filesystem;
 
@@ -18,6 +19,7 @@ namespace tuft::app {
 namespace {
 
 constexpr float kFontSize = 16;
+constexpr unsigned kIdeographs = 0x2e80;  // from here on: characters of Chinese, Japanese and Korean
 
 // Path by file name of all fonts in the system's folders.
 std::map<std::string, std::string> list_fonts() {
@@ -40,6 +42,18 @@ std::string first_of(const std::map<std::string, std::string>& fonts, std::initi
     for (const char* name : names)
         if (const auto at = fonts.find(name); at != fonts.end()) return at->second;
     return {};
+}
+
+/// Ranges of the characters of these ranges, of a text and of a set, as ImGui takes them.
+ImVector<ImWchar> ranges_of(const std::vector<const ImWchar*>& ranges, const std::string& text,
+                            const std::set<unsigned>& characters) {
+    ImFontGlyphRangesBuilder builder;
+    for (const ImWchar* range : ranges) builder.AddRanges(range);
+    builder.AddText(text.c_str());
+    for (const unsigned c : characters) builder.AddChar(static_cast<ImWchar>(c));
+    ImVector<ImWchar> out;
+    builder.BuildRanges(&out);
+    return out;
 }
 
 ImVec4 grey(float v, float alpha = 1) {
@@ -72,14 +86,6 @@ std::string find_chinese_font(const std::map<std::string, std::string>& fonts) {
     return {};
 }
 
-bool has_chinese_characters(std::string_view text) {
-    for (std::size_t i = 0; i + 1 < text.size(); ++i) {
-        const auto lead = static_cast<unsigned char>(text[i]), next = static_cast<unsigned char>(text[i + 1]);
-        if (lead > 0xe2 || (lead == 0xe2 && next >= 0xba)) return true;
-    }
-    return false;
-}
-
 Message Ui::prepare(const UiSettings& settings) {
     settings_ = settings;
     ImGuiIO& io = ImGui::GetIO();
@@ -92,6 +98,8 @@ Message Ui::prepare(const UiSettings& settings) {
                          "DejaVuSans.ttf", "LiberationSans-Regular.ttf", "FreeSans.ttf"});
     static const ImWchar latin_range[] = {0x20,   0x17f,  0x2010, 0x2027, 0x2190, 0x2193, 0x00b0,
                                           0x00b7, 0x0394, 0x0394, 0x03bc, 0x03bc, 0};
+    static ImVector<ImWchar> latin_ranges, chinese_ranges;
+    latin_ranges = ranges_of({latin_range}, {}, characters_);
     const float size = std::round(kFontSize * settings.scale);
     if (latin.empty()) {
         missing = "No font of the system was found; the built-in one is used.";
@@ -99,24 +107,21 @@ Message Ui::prepare(const UiSettings& settings) {
         config.SizePixels = size;
         io.Fonts->AddFontDefault(&config);
     } else {
-        io.Fonts->AddFontFromFileTTF(latin.c_str(), size, nullptr, latin_range);
+        io.Fonts->AddFontFromFileTTF(latin.c_str(), size, nullptr, latin_ranges.Data);
     }
+    // A square character needs more room than a Latin letter of the same size to be read.
+    const float square = std::round(1.14f * size);
     const std::string chinese = find_chinese_font(fonts);
-    static ImVector<ImWchar> ranges;
     if (!chinese.empty()) {
-        ranges.clear();
-        ImFontGlyphRangesBuilder builder;
-        builder.AddText(all_chinese_text().c_str());
-        if (settings.language == Language::chinese || settings.chinese_names)
-            builder.AddRanges(io.Fonts->GetGlyphRangesChineseSimplifiedCommon());
-        builder.BuildRanges(&ranges);
-        // A square character needs more room than a Latin letter of the same size to be read.
-        const float square = std::round(1.14f * size);
+        std::vector<const ImWchar*> common;
+        if (settings.language == Language::chinese || characters_.lower_bound(kIdeographs) != characters_.end())
+            common.push_back(io.Fonts->GetGlyphRangesChineseSimplifiedCommon());
+        chinese_ranges = ranges_of(common, all_chinese_text(), characters_);
         ImFontConfig config;
         config.MergeMode = true;
         config.GlyphOffset.y = std::round(0.4f * (square - size));
         config.FontNo = chinese.ends_with("NotoSansCJK-Regular.ttc") ? 2 : 0;  // the simplified face of the collection
-        io.Fonts->AddFontFromFileTTF(chinese.c_str(), square, &config, ranges.Data);
+        io.Fonts->AddFontFromFileTTF(chinese.c_str(), square, &config, chinese_ranges.Data);
         has_chinese = true;
     } else if (settings.language == Language::chinese) {
         missing =
@@ -126,8 +131,16 @@ Message Ui::prepare(const UiSettings& settings) {
     }
     large = latin.empty() ? io.Fonts->Fonts[0]
                           : io.Fonts->AddFontFromFileTTF(latin.c_str(), std::round(1.6f * size), nullptr, latin_range);
+    io.Fonts->Build();
+    add_placeholders(*io.Fonts->Fonts[0], characters_, square);
     style();
     return missing;
+}
+
+bool Ui::lacks_characters(const ImDrawData& drawn) {
+    const std::size_t known = characters_.size();
+    characters_.merge(drawn_placeholders(drawn));
+    return characters_.size() > known;
 }
 
 void Ui::style() {

@@ -3,6 +3,7 @@
 #include <array>
 #include <initializer_list>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "core/geometry/types.h"
 #include "core/message.h"
 
+struct ImDrawData;
 struct ImFont;
 
 /// \file
@@ -24,18 +26,14 @@ enum class Theme { dark, light };
 struct UiSettings {
     Language language = Language::english;
     Theme theme = Theme::dark;
-    float scale = 1;             ///< factor on all sizes
-    bool own_scale = false;      ///< set by the user; else it follows the display
-    bool left_handed = false;    ///< tools on the right
-    bool chinese_names = false;  ///< texts of the person have Chinese characters; not stored
+    float scale = 1;           ///< factor on all sizes
+    bool own_scale = false;    ///< set by the user; else it follows the display
+    bool left_handed = false;  ///< tools on the right
 };
 
 /// Returns the scale for a window of that size in pixels: the display's `content` scale, and at least the window's size
 /// over 1920 × 1080, in steps of 1/4, from 1 to 3.
 float scale_for(float content, int width, int height);
-
-/// Whether a text in UTF-8 has characters from U+2E80 on, which Latin fonts lack.
-bool has_chinese_characters(std::string_view text);
 
 /// Returns the best font with Chinese characters among these files; "" when there is none.
 std::string find_chinese_font(const std::map<std::string, std::string>& path_by_name);
@@ -53,6 +51,9 @@ class Ui {
   public:
     /// Loads fonts and sets colours. Returns the fault, or an empty message.
     Message prepare(const UiSettings& settings);
+    /// Whether a frame shows characters, such as those of a file's name, that `prepare` has not loaded yet; it loads
+    /// them the next time. False for those that no font has.
+    bool lacks_characters(const ImDrawData& drawn);
     const UiSettings& settings() const { return settings_; }
 
     /// Returns a text in the chosen language.
@@ -122,6 +123,7 @@ class Ui {
     void style();
 
     UiSettings settings_;
+    std::set<unsigned> characters_;  // that were drawn, besides those of the interface's own texts
     std::map<std::string, Place> places_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -9,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/system/interrupt.h"
+#include "core/system/path_fault.h"
 #include "core/system/system_message.h"
 
 namespace fs = std::filesystem;
@@ -17,8 +19,8 @@ namespace tuft {
 
 std::vector<char> read_file(const fs::path& path, std::size_t max_bytes) {
     std::error_code ec;
+    check_exists(path);
     const fs::file_status status = fs::status(path, ec);
-    if (!fs::exists(status)) throw Error(path.string(), "no such file");
     if (fs::is_directory(status)) throw Error(path.string(), "is a folder, not a file");
     if (!fs::is_regular_file(status)) throw Error(path.string(), "is not a regular file");
     const std::uintmax_t size = fs::file_size(path, ec);
@@ -28,7 +30,7 @@ std::vector<char> read_file(const fs::path& path, std::size_t max_bytes) {
         throw Error(path.string(), Message("is too large ({} MiB; the limit is {} MiB)", size >> 20, max_bytes >> 20));
     std::vector<char> bytes(size);
     std::ifstream file(path, std::ios::binary);
-    if (!file) throw Error(path.string(), "cannot be opened for reading");
+    if (!file) throw Error(path.string(), Message("cannot be read: {}", system_message(errno)));
     file.read(bytes.data(), static_cast<std::streamsize>(size));
     if (file.gcount() != static_cast<std::streamsize>(size)) throw Error(path.string(), "could not be read to its end");
     return bytes;
@@ -37,8 +39,7 @@ std::vector<char> read_file(const fs::path& path, std::size_t max_bytes) {
 void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     std::error_code ec;
-    if (!fs::is_directory(folder, ec))
-        throw Error(path.string(), Message("the output folder '{}' does not exist", folder.string()));
+    check_output_folder(path);
     // Writers choose their format by the extension, so it stays at the end.
     const fs::path temporary =
         folder / ("." + path.stem().string() + ".part" + std::to_string(::getpid()) + path.extension().string());
@@ -60,7 +61,7 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
 void write_file(const fs::path& path, const void* data, std::size_t size) {
     write_atomically(path, [&](const fs::path& temporary) {
         std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-        if (!file) throw Error(path.string(), "cannot be opened for writing");
+        if (!file) throw Error(path.string(), Message("cannot be written: {}", system_message(errno)));
         file.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
         file.close();
         if (!file) throw Error(path.string(), "could not be written to its end (disk full?)");

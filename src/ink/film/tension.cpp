@@ -47,6 +47,23 @@ void set_liquid(TensionTile& tile, const Active& active, std::span<const Sources
     gather_field(tile.w, planes);
 }
 
+/// Place in the list of the tile beyond a link of `active`.
+std::uint32_t place_beyond(const Active& active, std::size_t link) {
+    return active.others[active.link_others[link]].place;
+}
+
+void set_coarse_grids(TensionTile& t) {
+    sum_faces(t.grid, t.links, 1);
+    coarsen(t.grid, t.grid2);
+    sum_faces(t.grid2, t.links, 0.5f);
+    coarsen(t.grid2, t.grid4);
+    sum_faces(t.grid4, t.links, 0.25f);
+    coarsen(t.grid4, t.grid8);
+    sum_faces(t.grid8, t.links, 0.125f);
+    coarsen(t.grid8, t.grid16);
+    sum_faces(t.grid16, t.links, 0.0625f);
+}
+
 void find_change(TensionTile& t) {
     t.change = t.share = 0;
     for (int i = 0; i < kTexels; ++i) {
@@ -135,6 +152,23 @@ void Tension::cross_seams(std::uint32_t place, std::span<const Sources> sources,
 }
 
 void Tension::begin(const TileList& tiles, std::span<const Sources> sources, float mobility) {
+    take_tiles(tiles);
+    // Each step reads what the one before left in the tiles around.
+    each([&](TensionTile& t) { open_tile(t, tiles.list[t.place], sources, mobility); });
+    each([&](TensionTile& t) { close_rims(t, tiles.list[t.place]); });
+    each([&](TensionTile& t) {
+        for (int i = 0; i < kTexels; ++i)
+            t.mobility[static_cast<std::size_t>(field_of(i))] = t.inner[static_cast<std::size_t>(i)];
+    });
+    each([&](TensionTile& t) {
+        take_mobility(t);
+        set_faces(t, *tiles.list[t.place].geometry);
+        link_over_seams(t, tiles.list[t.place]);
+        set_coarse_grids(t);
+    });
+}
+
+void Tension::take_tiles(const TileList& tiles) {
     for (auto& tile : tiles_) spare_.push_back(std::move(tile));
     tiles_.clear();
     set_of_.assign(tiles.list.size(), kNone);
@@ -146,71 +180,51 @@ void Tension::begin(const TileList& tiles, std::span<const Sources> sources, flo
         tiles_.back()->place = place;
         tiles_.back()->held = held_on(tiles.list[place].slot);
     }
-    const auto geometry_of = [&](const TensionTile& t) -> const Geometry& { return *tiles.list[t.place].geometry; };
-    each([&](TensionTile& t) {
-        const Active& active = tiles.list[t.place];
-        for (std::size_t i = 0; i < 9; ++i) {
-            const std::uint32_t at = active.around[i];
-            t.around[i] = at == kNone ? kNone : set_of_[at];
-        }
-        set_liquid(t, active, sources);
-        open_texels(t, geometry_of(t), mobility);
-        for (const atlas::SeamLink& l : active.links) {
-            const std::uint32_t at =
-                active.others[active.link_others[static_cast<std::size_t>(&l - active.links.data())]].place;
-            const Plane* w = at == kNone ? nullptr : sources[at].liquid[0];
-            if (!w || !((*w)[l.other_texel] > t.held)) t.mobility[static_cast<std::size_t>(field_of(l.texel))] = 0;
-        }
-    });
-    const auto take_mobility = [&](TensionTile& t) {
-        std::array<const float*, 9> around{};
-        for (std::size_t i = 0; i < 9; ++i)
-            if (t.around[i] != kNone) around[i] = tiles_[t.around[i]]->mobility.data();
-        take_border<16>(t.mobility, around);
-    };
-    each([&](TensionTile& t) {
-        take_mobility(t);
-        hold_rims(t, geometry_of(t));
-        const Active& active = tiles.list[t.place];
-        for (std::size_t i = 0; i < active.links.size(); ++i) {
-            const std::uint32_t at = active.others[active.link_others[i]].place;
-            const std::uint32_t other = at == kNone ? kNone : set_of_[at];
-            const auto there = static_cast<std::size_t>(field_of(active.links[i].other_texel));
-            if (other != kNone && !(tiles_[other]->mobility[there] > 0)) t.inner[active.links[i].texel] = 0;
-        }
-    });
-    each([&](TensionTile& t) {
-        for (int i = 0; i < kTexels; ++i)
-            t.mobility[static_cast<std::size_t>(field_of(i))] = t.inner[static_cast<std::size_t>(i)];
-    });
-    each([&](TensionTile& t) {
-        take_mobility(t);
-        set_faces(t, geometry_of(t));
-        const Active& active = tiles.list[t.place];
-        t.links.clear();
-        for (std::size_t i = 0; i < active.links.size(); ++i) {
-            const atlas::SeamLink& l = active.links[i];
-            const std::uint32_t at = active.others[active.link_others[i]].place;
-            const std::uint32_t other = at == kNone ? kNone : set_of_[at];
-            if (other == kNone) continue;
-            const auto here = static_cast<std::size_t>(field_of(l.texel)),
-                       there = static_cast<std::size_t>(field_of(l.other_texel));
-            const float m0 = t.mobility[here], m1 = tiles_[other]->mobility[there];
-            if (!(m0 > 0 && m1 > 0)) continue;
-            t.links.push_back(
-                {other, l.texel, l.other_texel, l.weight, l.weight * (0.5f * (m0 + m1)), active.link_areas[i]});
-            t.grid.e[l.texel] += l.weight * (t.w[here] - tiles_[other]->w[there]) * t.grid.inverse[l.texel];
-        }
-        sum_faces(t.grid, t.links, 1);
-        coarsen(t.grid, t.grid2);
-        sum_faces(t.grid2, t.links, 0.5f);
-        coarsen(t.grid2, t.grid4);
-        sum_faces(t.grid4, t.links, 0.25f);
-        coarsen(t.grid4, t.grid8);
-        sum_faces(t.grid8, t.links, 0.125f);
-        coarsen(t.grid8, t.grid16);
-        sum_faces(t.grid16, t.links, 0.0625f);
-    });
+}
+
+void Tension::open_tile(TensionTile& t, const Active& active, std::span<const Sources> sources, float mobility) const {
+    for (std::size_t i = 0; i < 9; ++i) t.around[i] = in_set(active.around[i]);
+    set_liquid(t, active, sources);
+    open_texels(t, *active.geometry, mobility);
+    for (std::size_t i = 0; i < active.links.size(); ++i) {
+        const atlas::SeamLink& l = active.links[i];
+        const std::uint32_t at = place_beyond(active, i);
+        const Plane* w = at == kNone ? nullptr : sources[at].liquid[0];
+        if (!w || !((*w)[l.other_texel] > t.held)) t.mobility[static_cast<std::size_t>(field_of(l.texel))] = 0;
+    }
+}
+
+void Tension::take_mobility(TensionTile& t) const {
+    std::array<const float*, 9> around{};
+    for (std::size_t i = 0; i < 9; ++i)
+        if (t.around[i] != kNone) around[i] = tiles_[t.around[i]]->mobility.data();
+    take_border<16>(t.mobility, around);
+}
+
+void Tension::close_rims(TensionTile& t, const Active& active) const {
+    take_mobility(t);
+    hold_rims(t, *active.geometry);
+    for (std::size_t i = 0; i < active.links.size(); ++i) {
+        const std::uint32_t other = in_set(place_beyond(active, i));
+        const auto there = static_cast<std::size_t>(field_of(active.links[i].other_texel));
+        if (other != kNone && !(tiles_[other]->mobility[there] > 0)) t.inner[active.links[i].texel] = 0;
+    }
+}
+
+void Tension::link_over_seams(TensionTile& t, const Active& active) const {
+    t.links.clear();
+    for (std::size_t i = 0; i < active.links.size(); ++i) {
+        const atlas::SeamLink& l = active.links[i];
+        const std::uint32_t other = in_set(place_beyond(active, i));
+        if (other == kNone) continue;
+        const auto here = static_cast<std::size_t>(field_of(l.texel)),
+                   there = static_cast<std::size_t>(field_of(l.other_texel));
+        const float m0 = t.mobility[here], m1 = tiles_[other]->mobility[there];
+        if (!(m0 > 0 && m1 > 0)) continue;
+        t.links.push_back(
+            {other, l.texel, l.other_texel, l.weight, l.weight * (0.5f * (m0 + m1)), active.link_areas[i]});
+        t.grid.e[l.texel] += l.weight * (t.w[here] - tiles_[other]->w[there]) * t.grid.inverse[l.texel];
+    }
 }
 
 template <int N>

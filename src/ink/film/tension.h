@@ -162,6 +162,13 @@ class Tension {
     float held_ = 0, held_on_steep_ = 0;  ///< film units
 
     void begin(const TileList& tiles, std::span<const Sources> sources, float mobility);
+    void take_tiles(const TileList& tiles);
+    /// Sets liquid and mobility; a texel whose link leads to no liquid is closed.
+    void open_tile(TensionTile& t, const Active& active, std::span<const Sources> sources, float mobility) const;
+    void take_mobility(TensionTile& t) const;
+    void close_rims(TensionTile& t, const Active& active) const;
+    void link_over_seams(TensionTile& t, const Active& active) const;
+    std::uint32_t in_set(std::uint32_t place) const { return place == kNone ? kNone : set_of_[place]; }
 
     template <int N>
     void cycle();

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <system_error>
@@ -10,6 +11,7 @@
 #include "core/error.h"
 #include "core/system/interrupt.h"
 #include "core/system/parallel.h"
+#include "core/system/path_fault.h"
 #include "core/system/system_message.h"
 #include "core/text/units.h"
 #include "io/export/export_formats.h"
@@ -75,6 +77,17 @@ std::vector<std::uint8_t> decorated_parts(const mesh::SourceScene& source, const
 void check_parts(const mesh::TriangleMesh& mesh, const mesh::SourceScene& source) {
     for (std::size_t t = 0; t < mesh.n_triangles(); ++t)
         if (mesh::part_of(mesh, t) >= source.parts.size()) throw Error("a triangle is in a part that does not exist");
+}
+
+/// The median of the green channel; texels of no chart are black.
+double median_roughness(const ink::AtlasMap<std::uint8_t>& orm) {
+    std::array<std::size_t, 256> count{};
+    std::size_t all = 0;
+    for (std::size_t i = 1; i < orm.texels.size(); i += 3)
+        if (orm.texels[i] > 0) ++count[orm.texels[i]], ++all;
+    std::size_t below = 0, value = 0;
+    while (value < 255 && 2 * (below += count[value]) < all) ++value;
+    return static_cast<double>(value) / 255;
 }
 
 }  // namespace
@@ -155,8 +168,7 @@ std::string channel_name(const std::string& pigment) {
 void write_together(const fs::path& path, const std::function<void(const fs::path&)>& write) {
     const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
     std::error_code ec;
-    if (!fs::is_directory(parent, ec))
-        throw Error(path.string(), Message("the output folder '{}' does not exist", parent.string()));
+    check_output_folder(path);
     const fs::path folder = parent / ("." + path.stem().string() + ".part" + std::to_string(::getpid()));
     const Unfinished unfinished(folder);
     struct Cleanup {
@@ -235,6 +247,7 @@ std::vector<Message> export_model(const fs::path& path, const mesh::TriangleMesh
         .name = safe_stem(path),
         .y_up = options.frame.y_up,
         .metres_per_unit = *metres};
+    if (!maps.orm.texels.empty()) scene.roughness = median_roughness(maps.orm);
     const std::vector<Vec2f> page_uvs = split_pages(atlas, scene);
     scene.wedges = split_wedges(mesh, scene.corner_uvs, scene.triangle_page);
     std::vector<EncodedMap> encoded;

@@ -45,6 +45,7 @@ struct ExportScene {
     std::string name;
     bool y_up = false;  ///< of OBJ coordinates
     double metres_per_unit = 1e-3;
+    double roughness = 0.3;                    ///< of the decorated material, in a format that has one number for it
     std::vector<std::uint32_t> udims{1001};    ///< of each page
     std::vector<std::uint32_t> triangle_page;  ///< [n_triangles], or empty: all on page 0
 

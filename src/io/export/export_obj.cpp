@@ -194,13 +194,16 @@ std::vector<std::string> write_library(const std::filesystem::path& path, const 
     };
     bool used = false;
     for (std::size_t i = 0; i < scene.decorated.size(); ++i) used = used || is_decorated(i);
-    if (used) mtl = "newmtl decorated\nKa 0 0 0\nKd 1 1 1\nKs 0.04 0.04 0.04\nillum 2\n";
+    if (used)
+        mtl = "newmtl decorated\nKa 0 0 0\nKd 1 1 1\nKs 0.04 0.04 0.04\n" + mtl_roughness(scene.roughness) +
+              "Pm 0\nillum 2\n";
     for (const EncodedMap& map : maps) {
         write_staged(path.parent_path() / map.file, map.png.data(), map.png.size());
         if (map.page > 0 || !used) continue;
         const std::string file = scene.udims.size() == 1 ? map.file : scene.name + "_" + map.kind + ".<UDIM>.png";
         if (map.kind == "base_colour") mtl += "map_Kd " + file + "\n";
-        if (map.kind == "normal") mtl += "norm " + file + "\n";
+        if (map.kind == "normal")
+            mtl += "norm " + file + "\nmap_Bump -bm 1 " + file + "\n";  // Blender reads the second
     }
     try {
         const json document = parse_document(scene.source);

@@ -88,8 +88,7 @@ std::string entry_of_gltf(const json& material, const FileOfTexture& file_of_tex
     const double rough = factor_in(pbr, "roughnessFactor", 1), metal = factor_in(pbr, "metallicFactor", 1);
     std::string out = colour_line("Kd", colour, true);
     out += "Ks 0.04 0.04 0.04\n";
-    out += "Ns " + number_text(kSharpest * (1 - rough) * (1 - rough)) + "\n";
-    out += "Pr " + number_text(rough) + "\nPm " + number_text(metal) + "\n";
+    out += mtl_roughness(rough) + "Pm " + number_text(metal) + "\n";
     const std::string mode = material.value("alphaMode", "OPAQUE");
     if (mode != "OPAQUE" && colour.is_array() && colour.size() > 3 && colour[3].is_number())
         out += "d " + number_text(std::clamp(colour[3].get<double>(), 0.0, 1.0)) + "\n";
@@ -107,6 +106,11 @@ std::string entry_of_gltf(const json& material, const FileOfTexture& file_of_tex
 }
 
 }  // namespace
+
+std::string mtl_roughness(double roughness) {
+    const double smooth = 1 - roughness;
+    return "Ns " + number_text(kSharpest * smooth * smooth) + "\nPr " + number_text(roughness) + "\n";
+}
 
 std::string picture_name(std::string line) {
     const auto next_word = [&](std::size_t& at) {

@@ -39,6 +39,9 @@ struct MtlAsGltf {
 /// Roughness and metallic by `Ns` and `Ka` follow Blender.
 MtlAsGltf gltf_of_mtl(const std::string& name, const std::vector<MtlStatement>& entry, const TextureOf& texture_of);
 
+/// Returns the lines `Ns` and `Pr` of a roughness, 0–1. A reader that finds neither takes a mirror.
+std::string mtl_roughness(double roughness);
+
 /// Returns the file name of a texture's picture; "" where there is none.
 using FileOfTexture = std::function<std::string(std::size_t texture)>;
 

@@ -14,6 +14,7 @@
 
 #include "core/system/files.h"
 #include "core/system/memory.h"
+#include "core/system/path_fault.h"
 #include "core/system/system_message.h"
 #include "core/text/text.h"
 #include "io/project/project_db.h"
@@ -353,7 +354,7 @@ Project Project::create(const fs::path& path, const ModelToWrite& model, const s
 
 Project Project::open(const fs::path& path, const OpenOptions& options) {
     std::error_code ec;
-    if (!fs::exists(path, ec)) throw Error(path.string(), "no such file");
+    check_exists(path);
     if (fs::is_directory(path, ec)) throw Error(path.string(), "is a folder, not a project");
     if (!fs::is_regular_file(path, ec)) throw Error(path.string(), "is not a regular file");
     if (::access(path.c_str(), R_OK) != 0) throw Error(path.string(), "may not be read; change its permissions");

@@ -23,9 +23,9 @@ SurfaceTrace map_projected(const mesh::SurfaceQuery& query, const StrokeSamples&
 /// samples of `mapped` are no longer on the surface; height and frame become those of the nearest sample of the sheet,
 /// raised over all that the rays hit until the stroke comes back.
 ///
-/// `mapped`: of `trace`. Returns one flag per sample, true where the stroke has left its sheet. Other mappings end at
-/// an edge by themselves; they do not change, and nothing is returned. Cost: eight rays per s of path, 1 µs
-/// each; where a path crosses an edge also up to 300,000 rays.
+/// `mapped`: of `trace`. Returns one flag per sample, true where the stroke has left its sheet. Does nothing for other
+/// mappings, and returns nothing. Cost: eight rays per s of path, 1 µs each; where a path crosses an edge also up to
+/// 300,000 rays.
 std::vector<bool> leave_other_sheets(const mesh::SurfaceQuery& query, const StrokeSamples& trace, SurfaceTrace& mapped);
 
 }  // namespace tuft::stroke

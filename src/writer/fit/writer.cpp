@@ -107,63 +107,60 @@ Writer::Job Writer::job_of(const Glyph& glyph, std::size_t stroke) const {
     return job;
 }
 
-std::vector<std::vector<WrittenStroke>> Writer::write(const std::vector<Glyph>& glyphs, const ProgressFn& progress) {
-    const BrushHand with = hand();
-    const Pace at = pace();
+std::uint64_t Writer::seed_of(const BrushHand& with, const Pace& at) const {
     const std::string preset = brush::preset_toml(with.preset);
     const double facts[] = {with.unit, at.speed, at.radius,
                             at.ends,   at.ease,  static_cast<double>(options_.style.tries)};
-    const std::uint64_t seed = hash_bytes(facts, sizeof facts, hash_bytes(preset.data(), preset.size()));
+    return hash_bytes(facts, sizeof facts, hash_bytes(preset.data(), preset.size()));
+}
+
+Writer::Fitted Writer::fit_stroke(const Glyph& glyph, std::size_t stroke, const BrushHand& with, const Pace& at,
+                                  std::uint64_t seed) const {
+    Job job = job_of(glyph, stroke);
+    if (!job.fit) return {std::move(job.stations), 0, false};
+    const std::uint64_t key = hash_bytes(&job.key, sizeof job.key, seed);
+    if (const auto known = known_.find(key); known != known_.end()) return {known->second, key, false};
+    if (std::optional<std::vector<Station>> stored = cached(key)) return {std::move(*stored), key, false};
+    Fitted made{{}, key, true};
+    made.stations =
+        fit_stations(std::move(job.stations), job.target, with, at, {.tries = options_.style.tries}).stations;
+    store(key, made.stations);
+    return made;
+}
+
+std::vector<std::vector<WrittenStroke>> Writer::write(const std::vector<Glyph>& glyphs, const ProgressFn& progress) {
+    const BrushHand with = hand();
+    const Pace at = pace();
+    const std::uint64_t seed = seed_of(with, at);
     struct Place {
         std::size_t glyph, stroke;
     };
     std::vector<Place> places;
     for (std::size_t g = 0; g < glyphs.size(); ++g)
         for (std::size_t s = 0; s < glyphs[g].strokes.size(); ++s) places.push_back({g, s});
-    std::vector<std::vector<Station>> done(places.size());
-    std::vector<std::uint64_t> keys(places.size(), 0);
-    std::size_t fitted = 0;
+    std::vector<Fitted> done(places.size());
+    std::size_t made = 0;
     // In batches, so that progress is reported and a stop is heard.
     const std::size_t batch = 4 * static_cast<std::size_t>(std::max(1, thread_count()));
     for (std::size_t begin = 0; begin < places.size(); begin += batch) {
         report(progress, "writing", static_cast<double>(begin) / static_cast<double>(places.size()));
         const std::size_t n = std::min(batch, places.size() - begin);
-        std::vector<char> made(n, 0);
         parallel_for(n, 1, [&](std::size_t lo, std::size_t hi) {
-            for (std::size_t i = lo; i < hi; ++i) {
-                const Place& p = places[begin + i];
-                Job job = job_of(glyphs[p.glyph], p.stroke);
-                if (!job.fit) {
-                    done[begin + i] = std::move(job.stations);
-                    continue;
-                }
-                const std::uint64_t key = hash_bytes(&job.key, sizeof job.key, seed);
-                keys[begin + i] = key;
-                if (const auto known = known_.find(key); known != known_.end()) {
-                    done[begin + i] = known->second;
-                } else if (std::optional<std::vector<Station>> stored = cached(key)) {
-                    done[begin + i] = std::move(*stored);
-                } else {
-                    done[begin + i] =
-                        fit_stations(std::move(job.stations), job.target, with, at, {.tries = options_.style.tries})
-                            .stations;
-                    store(key, done[begin + i]);
-                    made[i] = 1;
-                }
-            }
+            for (std::size_t i = begin + lo; i < begin + hi; ++i)
+                done[i] = fit_stroke(glyphs[places[i].glyph], places[i].stroke, with, at, seed);
         });
-        for (std::size_t i = 0; i < n; ++i) {
-            if (keys[begin + i] != 0) known_[keys[begin + i]] = done[begin + i];
-            fitted += static_cast<std::size_t>(made[i]);
+        for (std::size_t i = begin; i < begin + n; ++i) {
+            if (done[i].key != 0) known_[done[i].key] = done[i].stations;
+            made += done[i].made;
         }
     }
-    n_fitted_ += fitted;
-    if (fitted > 0) options_.cache.trim();
+    n_fitted_ += made;
+    if (made > 0) options_.cache.trim();
     std::vector<std::vector<WrittenStroke>> out;
     std::size_t next = 0;
     for (const Glyph& glyph : glyphs) {
         std::vector<std::vector<Station>> own;
-        for (std::size_t s = 0; s < glyph.strokes.size(); ++s) own.push_back(std::move(done[next++]));
+        for (std::size_t s = 0; s < glyph.strokes.size(); ++s) own.push_back(std::move(done[next++].stations));
         out.push_back(strokes_of(glyph, own));
     }
     return out;

@@ -52,6 +52,14 @@ class Writer {
     BrushHand hand();
     Pace pace() const;
     Job job_of(const Glyph& glyph, std::size_t stroke) const;
+    struct Fitted {
+        std::vector<Station> stations;
+        std::uint64_t key = 0;  // 0: drawn as it is
+        bool made = false;      // now, not taken from a cache
+    };
+    std::uint64_t seed_of(const BrushHand& with, const Pace& at) const;
+    Fitted fit_stroke(const Glyph& glyph, std::size_t stroke, const BrushHand& with, const Pace& at,
+                      std::uint64_t seed) const;
     std::vector<WrittenStroke> strokes_of(const Glyph& glyph, const std::vector<std::vector<Station>>& fitted);
     std::vector<WrittenStroke> filled(const Glyph& glyph) const;
     WrittenStroke motion(const std::vector<Station>& stations, const Glyph& glyph, std::size_t stroke);

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <map>
 #include <set>
 
 #include "core/error.h"
 #include "core/system/files.h"
+#include "core/system/path_fault.h"
 #include "io/font/font.h"
 #include "writer/glyphs/outline_font.h"
 
@@ -154,6 +156,7 @@ std::vector<std::optional<Glyph>> GlyphSource::find_line(const std::u32string& l
 
 std::unique_ptr<GlyphSource> open_glyphs(const fs::path& path) {
     std::error_code error;
+    if (!fs::exists(path, error) && error && error.value() != ENOENT) check_exists(path);
     if (!fs::exists(path, error)) throw Error(path.string(), Message("there is no such file or folder of characters"));
     if (fs::is_directory(path, error)) return open_folder(path);
     if (path.extension() == ".svg") return std::make_unique<LineFont>(path);
