@@ -99,6 +99,7 @@ std::string place_words(const Writing& w, const stroke::Placement& p) {
     if (w.mirrored) words += " --place-mirror";
     if (w.mapping != stroke::SurfaceMapping::drape)
         words += " --mapping " + std::string(stroke::surface_mapping_name(w.mapping));
+    if (w.file.extension() == ".svg") words += " --areas brush";
     if (project) words += fmt::format(" --read-from {:.6f},{:.6f},{:.6f}", from.x, from.y, from.z);
     return words;
 }

@@ -43,7 +43,7 @@ stroke::Placement place_writing(const Writing& writing, const mesh::SurfaceQuery
 double painted_scale(const Writing& writing);
 
 /// Returns the options of `tuft paint` for this placement: "--place 1.000,2.000,3.000 --place-width 60.000 --place-turn
-/// 5.00".
+/// 5.00"; with "--areas brush" for SVG, whose lines and areas the studio paints with the brush.
 std::string place_words(const Writing& writing, const stroke::Placement& placement);
 
 /// Returns true when the drawing has line widths.

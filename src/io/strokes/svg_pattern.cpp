@@ -9,7 +9,7 @@
 namespace tuft::io {
 namespace {
 
-constexpr std::size_t kMostReferences = 64;
+constexpr std::size_t kMostTemplates = 64;
 constexpr double kMostTiles = 20'000;
 
 }  // namespace
@@ -17,7 +17,7 @@ constexpr double kMostTiles = 20'000;
 std::vector<pugi::xml_node> svg_pattern_chain(const std::string& id, const SvgIds& ids) {
     std::vector<pugi::xml_node> chain;
     auto at = ids.find(id);
-    while (chain.size() < kMostReferences && at != ids.end() && local_name(at->second) == "pattern") {
+    while (chain.size() < kMostTemplates && at != ids.end() && local_name(at->second) == "pattern") {
         chain.push_back(at->second);
         const std::string next = svg_href(at->second);
         at = next.size() > 1 ? ids.find(next.substr(1)) : ids.end();
