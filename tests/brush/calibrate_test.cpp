@@ -125,8 +125,8 @@ TEST(Calibrate, TheOtherHalfComesOutWithinTheScatterOfTheTable) {
     EXPECT_LT(miss.drag, std::hypot(floor, 0.35e-3) / 0.5e-3);
     EXPECT_LT(miss.width, 1.25);
     // Of two offsets at 12 mm, 4.0 and 6.0 mm, one is three repeatabilities off what shallower lines lead to: alone it
-    // makes sqrt(9/8) of the mean, beside 1 of all the others.
-    EXPECT_LT(miss.offset, std::sqrt(1 + 9.0 / 8));
+    // makes sqrt(9/8) of the mean, beside 1 of all the others and the same leverage, 0.35 / 0.5 of a repeatability.
+    EXPECT_LT(miss.offset, std::sqrt(1 + 9.0 / 8 + 0.49));
 }
 
 TEST(Calibrate, WidthsAloneAreEnoughAndTellLess) {
