@@ -362,7 +362,7 @@ TEST(UiText, ErrorsOfFilesAreSaidInChineseAndKeepTheNameOfTheFile) {
                              "<svg xmlns='http://www.w3.org/2000/svg'><path d='M0 0L9 9' stroke='#900000' "
                              "stroke-dasharray='1'/><image/><image/><text fill='#900000'>a&#x10FFFD;</text></svg>"),
                      {.note = [&](const Message& note) { notes.push_back(note); }});
-    EXPECT_EQ(notes.size(), 4u);
+    EXPECT_EQ(notes.size(), 3u) << "the dashes are drawn";
     for (const Message& note : notes) EXPECT_FALSE(has_english(chinese(note))) << chinese(note);
     std::filesystem::remove_all(folder);
     EXPECT_FALSE(

@@ -54,7 +54,7 @@ TEST(Writing, OptionsOfAnUprightPlaceHaveNoNegativeZero) {
     const Vec3 front{0, -1, 0};
     for (const double turn : {-1e-9, 0.0, 1e-9}) {
         const std::string words = place_words(cross(), stroke::upright_placement({0, -0.1, 0.05}, front, turn));
-        EXPECT_TRUE(words.ends_with("--place-turn 0.00")) << words;
+        EXPECT_NE(words.find("--place-turn 0.00 "), std::string::npos) << words;
     }
 }
 

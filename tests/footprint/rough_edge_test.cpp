@@ -31,7 +31,9 @@ Footprint picture(double cell, const RoughEdge& edge) {
 }
 
 RoughEdge hair(std::uint64_t seed) {
-    return {{.spacing = kSpacing, .seed = seed, .travel = 0.05, .foot = {3e-3, 0}, .direction = {1, 0}}, {}};
+    // Rough ground whose own grain is too short to move the edge.
+    return {{.spacing = kSpacing, .seed = seed, .travel = 0.05, .foot = {3e-3, 0}, .direction = {1, 0}},
+            {.relief = 1, .length = 1e-9}};
 }
 
 double area_of(const Footprint& f) {

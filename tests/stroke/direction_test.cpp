@@ -4,6 +4,7 @@
 #include <map>
 #include <numbers>
 
+#include "ink/colour/pigments.h"
 #include "sheet.h"
 
 namespace tuft::stroke {
@@ -13,6 +14,9 @@ namespace {
 std::map<std::uint32_t, double> film_of_line(const Frame& frame, const std::string& brush, double depth) {
     const Model model = sheet(frame, 512);
     Document painting(model, {});
+    ink::Substrate ground = ink::load_substrate("porcelain");
+    ground.relief = 0;  // its grain lies in space, and would not be turned
+    painting.use(ground);
     painting.paint(line(brush, depth, frame));
     const ink::Canvas& canvas = painting.layers().canvas();
     std::map<std::uint32_t, double> film;

@@ -16,6 +16,7 @@ constexpr double kEnd = 1.5;                      // B: of the spacing
 constexpr double kOfFlank = 0.05;                 // (n·t)² up to which an edge is all flank
 constexpr double kCoarse = 0.1e-3;                // metres: D of coarser hair
 constexpr double kGrain = 0.35, kFilm = 10e-6;    // of the length of the grain; metres of ink that drown it
+constexpr double kHeld = 0.1;                     // part of hair's edge that ink on a smooth ground keeps
 constexpr double kLeastGrain = 4e-6;              // metres: G below which the grain is left out
 constexpr double kFull = 0.5, kGone = 1.25;       // cells over the detail's size between which it vanishes
 constexpr double kNarrow = 16;                    // spacings: width of a mark from which its edge is fully rough
@@ -45,6 +46,7 @@ class Displacement {
           edge_(edge),
           hair_(std::min(edge.hair.spacing, kCoarse) * visible_part(plane.cell, edge.hair.spacing)) {
         const EdgeGrain& g = edge.grain;
+        hair_ *= kHeld + (1 - kHeld) * g.relief / (g.relief + kFilm);
         if (!(g.relief > 0)) return;
         const double whole = kGrain * g.length * g.relief / (g.relief + kFilm);
         grain_ = whole > kLeastGrain ? whole * visible_part(plane.cell, g.length) : 0;

@@ -11,8 +11,9 @@
 ///
 /// Each point of an outline moves along its outward unit normal n by
 ///
-///     δ = w D (A h(x, s) + B c k(x, s)) + w' G r(P),   D = min(d, 0.1 mm),
+///     δ = w D (A h(x, s) + B c k(x, s)) + w' G r(P),   D = min(d, 0.1 mm) (0.1 + 0.9 ζ / (ζ + 10 µm)),
 ///
+/// with the rms height ζ of the ground's grain: on a smooth glaze the ink's own surface draws the edge straight.
 /// x = t × (p − foot) / d, the number of hairs beside the hand's path, s = travel + t · (p − foot), the place along it,
 /// t the unit direction of the hand. While the hand goes straight on, x and s of a place on the surface do not change,
 /// so the edge that the stamps leave together is the displaced edge. h and k are value noise with cells of one hair

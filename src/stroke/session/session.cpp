@@ -26,13 +26,13 @@ bool is_paste(const ink::Ink& ink) {
 
 HairContactOptions hair_options(const SessionInput& in, bool mixed) {
     const double cell = 0.5 * in.model.texels.texel_size;
-    const bool levels = in.wet.film || is_paste(in.ink) || in.stroke.erases() || in.stroke.layer == kPaletteLayer;
+    const bool levels = in.wet.film || is_paste(in.ink) || in.stroke.layer == kPaletteLayer;
     const footprint::EdgeGrain grain{static_cast<double>(in.substrate.relief),
                                      static_cast<double>(in.substrate.relief_length)};
     return {.closed = {is_paste(in.ink) ? std::max(cell, kPasteCell) : cell, !levels, grain},
             .always_closed = in.stroke.layer == kPaletteLayer,
             .places_nodes = in.wet.film || mixed || is_paste(in.ink),
-            .tones = !levels && !mixed};
+            .tones = !levels && !mixed && !in.stroke.erases()};
 }
 
 }  // namespace
