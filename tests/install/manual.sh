@@ -13,7 +13,7 @@ fail() { echo "FAILED: $*"; bad=1; }
 [ -z "$studio" ] || "$studio" --reference "$work"
 
 plain() { sed -e 's/\\f[BIR]//g' -e 's/\\-/-/g' -e 's/\\&//g' "$1"; }
-subcommands() { "$@" --help | sed -n '/^Subcommands:/,/^$/p' | grep -oE '^  [a-z]+' | tr -d ' ' || true; }
+subcommands() { "$@" --help | sed -n '/^Subcommands:/,/^$/p' | grep -oE '^  [a-z][a-z-]*' | tr -d ' ' || true; }
 # named PAGE PROGRAM [COMMAND]: every option of the help of a command and its subcommands is in the page and in both
 # completions.
 named() {

@@ -17,6 +17,10 @@ std::map<std::uint32_t, double> film_of_line(const Frame& frame, const std::stri
     ink::Substrate ground = ink::load_substrate("porcelain");
     ground.relief = 0;  // its grain lies in space, and would not be turned
     painting.use(ground);
+    // One bundle: which hair comes to lie where across the line is decided at the first touch.
+    brush::Preset preset = brush::load_preset(brush);
+    preset.bundles = 1;
+    painting.use(preset);
     painting.paint(line(brush, depth, frame));
     const ink::Canvas& canvas = painting.layers().canvas();
     std::map<std::uint32_t, double> film;

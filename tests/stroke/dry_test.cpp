@@ -266,8 +266,9 @@ TEST(DryBrush, HairThatSticksTogetherDoesNotComeAndGoAtOnce) {
                 if (row[i] && std::abs(at) < 7.5e-3) ++clusters[static_cast<std::size_t>((at + 7.5e-3) / 0.5e-3)];
             }
         std::sort(clusters.begin(), clusters.end());
-        // Some 150 bristles go on and off each for itself: 1 / √150 is 8 %; a bundle's hair all at once made 40 to 70.
-        EXPECT_LT(clusters.back(), 1.2 * clusters[15]) << seed;
+        // Some 150 bristles go on and off each for itself: 1 / √150 is 8 %, and the largest of thirty lies up to three
+        // times that above the middle; a bundle's hair all at once made 40 to 70.
+        EXPECT_LT(clusters.back(), 1.25 * clusters[15]) << seed;
     }
 }
 
