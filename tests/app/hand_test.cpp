@@ -330,6 +330,35 @@ TEST(Orbit, ZoomingKeepsThePlaceUnderTheCursor) {
     }
 }
 
+// The relative tolerance is rounding.
+TEST(Orbit, AMovedAndScaledModelLooksAsBefore) {
+    const Box former{Vec3(-0.1, -0.2, 0), Vec3(0.3, 0.2, 0.1)};
+    for (const double scale : {1.0, 0.001, 25.4})
+        for (const Vec3& shift : {Vec3(0), Vec3(3, -2, 0.5)}) {
+            const Box revised{scale * former.lo + shift, scale * former.hi + shift};
+            Orbit o;
+            o.target = {0.05, -0.1, 0.02};
+            const Vec3 p(0.2, 0.1, 0.05);
+            const Vec3 before = render::picture_point(o.camera(800, 600, former), p);
+            o.follow(former, revised);
+            const Vec3 after = render::picture_point(o.camera(800, 600, revised), scale * p + shift);
+            EXPECT_NEAR(before.x, after.x, 1e-4) << scale;
+            EXPECT_NEAR(before.y, after.y, 1e-4) << scale;
+        }
+}
+
+TEST(Orbit, AModelOfAnotherShapeKeepsTheCameraAndIsFramedWhereItLeftTheView) {
+    const Box former{Vec3(0), Vec3(0.1)};
+    Orbit o;
+    o.target = Vec3(0.05);
+    o.follow(former, {Vec3(0), Vec3(0.1, 0.1, 0.15)});
+    EXPECT_EQ(o.target, Vec3(0.05));
+    EXPECT_EQ(o.distance, Orbit{}.distance);
+    const Box away{Vec3(1), Vec3(1.1, 1.1, 1.2)};
+    o.follow(former, away);
+    EXPECT_EQ(o.target, away.centre());
+}
+
 TEST(Orbit, AStandardViewIsParallelUntilItIsTurned) {
     for (const bool parallel : {false, true}) {
         Orbit o;

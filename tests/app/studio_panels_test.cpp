@@ -214,5 +214,37 @@ TEST_F(Panels, TheLanguageIsChangedInTheMenuBarAndAMissingFontIsNamedWithItsPack
     EXPECT_NE(read(path("state") + "/tuft/settings").find("language chinese"), std::string::npos);
 }
 
+// What the studio names is stored in one language, so that a project reads the same in both.
+TEST_F(Panels, NamesGivenInTheChineseWindowAreStoredAsInTheEnglishOne) {
+    const Ran ran = studio(kBowl + "set language chinese\n" + kTwoStrokes +
+                               "click \"Add a layer\"\nwait-ready\nwait 0.1\nclick \"layer Layer 2\"\nwait 0.1\n"
+                               "click Duplicate\nwait-ready\nexpect label \"layer Layer 2 copy\"\n"
+                               "key f2\nwait 0.2\nkey enter\nwait-ready\nexpect label \"layer Layer 2 copy\"\n"
+                               "click \"fold Snapshots\"\nwait 0.1\nclick \"Take a snapshot\"\nwait-ready\n"
+                               "click \"snapshot Snapshot 1\"\nwait 0.1\nclick \"Snapshot name\"\nkey enter\n"
+                               "wait-ready\nexpect label \"snapshot Snapshot 1\"\n"
+                               "click \"fold Snapshots\"\nwait 0.1\nclick \"stroke 1\"\nhold ctrl\nclick \"stroke "
+                               "2\"\nhold none\nwait 0.1\nright-click \"stroke 1\"\nwait 0.1\nclick \"Make a group\"\n"
+                               "wait-ready\nwait 0.1\nexpect label \"group Group\"\nsave work.tuft\nwait-ready\n",
+                           "--headless --size 1280x1200");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const nlohmann::json project = tuft("inspect '" + path("work.tuft") + "' --json");
+    ASSERT_EQ(project["layers"].size(), 3u);
+    EXPECT_EQ(project["layers"][1]["name"], "Layer 2");
+    EXPECT_EQ(project["layers"][2]["name"], "Layer 2 copy");
+}
+
+// A CAD file states its unit, which its reader converts: there is none to choose, and none to name wrongly.
+TEST_F(Panels, ACadFileIsOpenedByItsChordAndWithoutAUnitToChoose) {
+    const Ran ran = studio("open " + source_folder() +
+                               "/tests/fuzz/corpus/stp/box.stp\nwait-ready\nexpect label \"CAD groups\"\nnames\n"
+                               "click \"Chord tolerance\"\nwait 0.2\nclick \"0.5 mm\"\nwait-ready\nset texels 256\n"
+                               "click \"Unwrap and paint\"\nwait-ready\nexpect model\n",
+                           "--headless --size 1280x720");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_EQ(ran.out.find("Unit\n"), std::string::npos) << ran.out;
+    EXPECT_EQ(ran.out.find("\nUp\n"), std::string::npos) << ran.out;
+}
+
 }  // namespace
 }  // namespace tuft::app

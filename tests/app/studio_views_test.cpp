@@ -168,6 +168,36 @@ TEST_F(Views, TheGuideAdvancesWithEachActionAndCanBeSkipped) {
     EXPECT_EQ(skipped.out.find("Skip the guide"), std::string::npos);
 }
 
+// A box of 60 × 40 × 20 mm, painted and then moved by 200 mm.
+TEST_F(Views, TheCameraFollowsARevisedModelThatMovedAndTheMotionIsNamed) {
+    const auto write_box = [this](const std::string& name, double shift) {
+        std::ofstream out(path(name));
+        for (const int z : {0, 20})
+            for (const int y : {0, 40})
+                for (const int x : {0, 60}) out << "v " << x + shift << ' ' << y << ' ' << z << '\n';
+        out << "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+    };
+    write_box("former.obj", 0);
+    write_box("moved.obj", 200);
+    const Ran ran = studio("open " + path("former.obj") +
+                               "\nwait-ready\nset texels 256\nclick \"Unwrap and paint\"\nwait-ready\n"
+                               "stroke 48%,55% 52%,55%\nwait-ready\nexpect strokes 1\nsave "
+                               "work.tuft\nwait-ready\nreport\nrevise " +
+                               path("moved.obj") +
+                               "\nwait-ready\nset texels 256\nclick \"Unwrap and repaint\"\nwait-ready\n"
+                               "expect message \"shifted by (200.0, 0.0, 0.0) mm\"\nreport\n",
+                           "--headless --size 1280x720");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    std::istringstream lines(ran.out);
+    std::string first, second;
+    ASSERT_TRUE(std::getline(lines, first) && std::getline(lines, second)) << ran.out;
+    const nlohmann::json before = nlohmann::json::parse(first), after = nlohmann::json::parse(second);
+    EXPECT_NEAR(after["target_mm"][0].get<double>() - before["target_mm"][0].get<double>(), 200, 0.01)
+        << "of figures with three decimals";
+    EXPECT_EQ(after["target_mm"][1], before["target_mm"][1]);
+    EXPECT_EQ(after["distance_mm"], before["distance_mm"]);
+}
+
 TEST_F(Views, TheManualIsInTheHelpMenu) {
     const Ran ran = studio(
         "wait 0.2\nclick Help\nwait 0.1\nclick Manual\nwait 0.2\nclick \"page Ink\"\nwait 0.2\nexpect label \"page "

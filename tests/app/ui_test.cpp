@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/panels/panels.h"
 #include "app/text/texts.h"
 #include "app/widgets/manual_text.h"
 #include "brush/preset/preset.h"
@@ -432,6 +433,23 @@ TEST(UiText, ABrushOfAnotherSizeIsNamedByTwoDigitsOfItsFactor) {
     EXPECT_EQ(ui.title("goat-large*0.10743"), "Goat, large \xc3\x97 0.11");
     EXPECT_EQ(ui.title("mixed-medium*1.8"), "Mixed, medium \xc3\x97 1.8");
     EXPECT_EQ(ui.title("my own"), "my own");
+}
+
+TEST(UiText, NamesThatTheStudioGaveAreShownInTheLanguageAndOthersAsTheyAre) {
+    ImGui::CreateContext();
+    Ui ui;
+    for (const char* name : {"Layer 2", "Layer 2 copy", "Layer 2 copy 3", "Layer 2 copy copy", "copy", "Layer x"})
+        EXPECT_EQ(layer_title(ui, name), name);
+    ui.prepare({.language = Language::chinese});
+    EXPECT_EQ(layer_title(ui, "Layer 2"), "图层 2");
+    EXPECT_EQ(layer_title(ui, "Layer 2 copy"), "图层 2 副本");
+    EXPECT_EQ(layer_title(ui, "Layer 2 copy 3"), "图层 2 副本 3");
+    EXPECT_EQ(layer_title(ui, "Layer 2 copy copy"), "图层 2 副本 副本");
+    EXPECT_EQ(layer_title(ui, "gold copy"), "gold 副本");
+    EXPECT_EQ(numbered_title(ui, "Snapshot 12", "Snapshot"), "快照 12");
+    for (const char* name : {"", "copy", " copy", "gold", "Layer", "Layer ", "Layer x", "a copy of it", "photocopy"})
+        EXPECT_EQ(layer_title(ui, name), name);
+    ImGui::DestroyContext();
 }
 
 }  // namespace

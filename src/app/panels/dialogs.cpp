@@ -71,6 +71,10 @@ void note_beside(const std::string& text) {
 void frame_rows(Ui& ui, const Inspected& in, FileFrame& frame) {
     static const std::vector<std::string> units{"um", "mm", "cm", "m", "in", "ft"}, axes{"z", "y"};
     const std::string& guess = in.summary.unit.unit;
+    if (io::is_cad_file(in.path)) {  // each CAD file states its own, and its reader converts
+        fact(ui, "Unit of the file", ui.tr("stated in the file"));
+        return;
+    }
     name_row(ui, "Unit of the file");
     ImGui::BeginDisabled(in.unit_fixed);
     ui.combo("Unit", frame.unit, units, 90);
@@ -79,7 +83,7 @@ void frame_rows(Ui& ui, const Inspected& in, FileFrame& frame) {
                 : frame.unit == guess ? ui.tr("guessed from the size")
                                       : std::string(ui.tr("guessed")) + ": " + guess);
     name_row(ui, "Upward axis");
-    std::string up = frame.y_up || (in.unit_fixed && !io::is_cad_file(in.path)) ? "y" : "z";
+    std::string up = frame.y_up || in.unit_fixed ? "y" : "z";
     ImGui::BeginDisabled(in.unit_fixed);
     if (ui.combo("Up", up, axes, 90)) frame.y_up = up == "y";
     ImGui::EndDisabled();
@@ -101,7 +105,7 @@ bool cad_rows(Ui& ui, io::CadReading& cad) {
     for (std::size_t i = 0; i < kChords.size(); ++i)
         if (kChords[i] * kMillimetre == cad.chord) chosen = i;
     std::string chord = chords[chosen];
-    if (ui.combo("Chord tolerance", chord, chords, 120))
+    if (ui.combo("Chord tolerance", chord, chords, 140))
         for (std::size_t i = 0; i < chords.size(); ++i)
             if (chords[i] == chord) cad.chord = kChords[i] * kMillimetre;
     return !(cad == before);

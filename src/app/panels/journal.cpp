@@ -10,6 +10,7 @@ namespace tuft::app {
 namespace {
 
 constexpr float kRowHeight = 42, kIndent = 16;
+constexpr const char* kGroup = "Group";         // the name of a group that is made in the list
 constexpr std::size_t kThumbnailStrokes = 300;  // of a group, that its picture shows
 
 using Lines = std::vector<const StrokeLine*>;
@@ -181,7 +182,7 @@ void context_menu(const JournalParts& s) {
     }
     if (ui.menu_item("Zoom to it", nullptr, false, !s.journal.outline.empty())) look_at_outline(s);
     ImGui::Separator();
-    if (ui.menu_item("Group", nullptr, false, lines.size() > 1)) post(s, {.group = ui.tr("Group")}, lines);
+    if (ui.menu_item("Make a group", nullptr, false, lines.size() > 1)) post(s, {.group = kGroup}, lines);
     if (ui.menu_item("Ungroup", nullptr, false, grouped)) post(s, {.group = ""}, lines);
     ImGui::Separator();
     if (ui.menu_item("Delete", name_of(s.keys.chord(Action::delete_stroke)).c_str())) post(s, {.remove = true}, lines);
@@ -262,6 +263,11 @@ void fold_arrow(const JournalParts& s, std::uint64_t group, const std::string& n
     ImGui::SameLine(0, 0);
 }
 
+// The name that the studio gives is stored in English.
+std::string group_title(const Ui& ui, const std::string& name) {
+    return name == kGroup ? ui.tr(kGroup) : name;
+}
+
 void draw_row(const JournalParts& s, const JournalRow& row) {
     const float size = s.ui.px(kRowHeight);
     Lines lines;
@@ -286,7 +292,7 @@ void draw_row(const JournalParts& s, const JournalRow& row) {
         draw_group(s, lines, at, size);
         const auto n = static_cast<std::size_t>(
             std::count_if(lines.begin(), lines.end(), [](const StrokeLine* l) { return is_stroke(*l); }));
-        text = {newest.group.name, s.ui.sentence(Message(n == 1 ? "{} stroke" : "{} strokes", n))};
+        text = {group_title(s.ui, newest.group.name), s.ui.sentence(Message(n == 1 ? "{} stroke" : "{} strokes", n))};
     } else {
         draw_entry(s, newest, at, size);
         text = text_of(s, newest, row.lines.front() + 1);

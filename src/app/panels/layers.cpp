@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <string_view>
 #include <utility>
 
 #include "app/panels/panels.h"
@@ -16,11 +17,15 @@ void change(const LayerParts& s, const stroke::LayerEdit& edit) {
     s.work.post(ChangeLayers{edit});
 }
 
-// A name that no layer has yet.
+// A name that no layer has yet, stored in English and shown by layer_title.
 std::string fresh_name(const LayerParts& s) {
     for (std::size_t n = s.table.layers.size() + 1;; ++n) {
-        const std::string name = std::string(s.ui.tr("Layer")) + " " + std::to_string(n);
-        if (!s.table.find(std::string_view(name))) return name;
+        std::string name = "Layer " + std::to_string(n);
+        // An older project may store names in the language of its time.
+        const std::string title = layer_title(s.ui, name);
+        if (std::none_of(s.table.layers.begin(), s.table.layers.end(),
+                         [&](const Layer& l) { return layer_title(s.ui, l.name) == title; }))
+            return name;
     }
 }
 
@@ -58,7 +63,8 @@ void begin_renaming(const LayerParts& s, const Layer& layer) {
 
 void name_field(const LayerParts& s, const Layer& layer) {
     char name[stroke::kMaxNameBytes + 1];
-    std::snprintf(name, sizeof name, "%s", layer.name.c_str());
+    const std::string title = layer_title(s.ui, layer.name);
+    std::snprintf(name, sizeof name, "%s", title.c_str());
     ImGui::SetNextItemWidth(-1);
     const bool appeared = std::exchange(s.layers.list.focus, false);
     if (appeared) ImGui::SetKeyboardFocusHere();
@@ -68,7 +74,7 @@ void name_field(const LayerParts& s, const Layer& layer) {
     if (!entered && (appeared || !ImGui::IsItemDeactivated())) return;
     s.layers.list.renamed = 0;
     // Escape leaves the text as it was.
-    if (layer.name != name && name[0]) change(s, layer, [&](Layer& l) { l.name = name; });
+    if (title != name && name[0]) change(s, layer, [&](Layer& l) { l.name = name; });
 }
 
 void context_menu(const LayerParts& s, const Layer& layer, std::size_t place) {
@@ -157,6 +163,10 @@ void details(const LayerParts& s, const Layer& layer, std::size_t place) {
     if (ui.toggle("Locked", locked, "Takes no strokes")) change(s, layer, [locked](Layer& l) { l.locked = locked; });
 }
 
+bool is_number(std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == text.npos;
+}
+
 std::string row_text(const LayerParts& s, const Layer& layer) {
     std::string text = layer_title(s.ui, layer.name), more;
     const auto add = [&](const std::string& word) { more += (more.empty() ? "" : ", ") + word; };
@@ -211,10 +221,21 @@ void row(const LayerParts& s, const Layer& layer, std::size_t place) {
 
 }  // namespace
 
+std::string numbered_title(const Ui& ui, const std::string& name, const char* word) {
+    const std::string given = std::string(word) + " ";
+    const bool numbered = name.starts_with(given) && is_number(std::string_view(name).substr(given.size()));
+    return numbered ? std::string(ui.tr(word)) + " " + name.substr(given.size()) : name;
+}
+
 std::string layer_title(const Ui& ui, const std::string& name) {
-    constexpr std::string_view kGiven = "Layer ";
-    const bool given = name.starts_with(kGiven) && name.find_first_not_of("0123456789", kGiven.size()) == name.npos;
-    return given ? std::string(ui.tr("Layer")) + " " + name.substr(kGiven.size()) : name;
+    // "NAME copy" and "NAME copy N", as `duplicate` and stroke::free_name make them.
+    constexpr std::string_view kCopy = " copy";
+    if (const std::size_t at = name.rfind(kCopy); at != std::string::npos && at > 0) {
+        const std::string number = name.substr(at + kCopy.size());
+        if (number.empty() || (number[0] == ' ' && is_number(std::string_view(number).substr(1))))
+            return layer_title(ui, name.substr(0, at)) + " " + ui.tr("copy") + number;
+    }
+    return numbered_title(ui, name, "Layer");
 }
 
 void layers_section(const LayerParts& s) {

@@ -15,11 +15,18 @@ const SnapshotLine* find_snapshot(const Session& s, const std::string& id) {
     return at == s.journal.snapshots.lines.end() ? nullptr : &*at;
 }
 
+constexpr const char* kWord = "Snapshot";
+
+std::string title_of(const Ui& ui, const SnapshotLine& line) {
+    return numbered_title(ui, line.name, kWord);
+}
+
 std::string fresh_snapshot_name(const Session& s) {
     for (std::size_t n = s.journal.snapshots.lines.size() + 1;; ++n) {
-        std::string name = std::string(s.ui.tr("Snapshot")) + " " + std::to_string(n);
+        std::string name = "Snapshot " + std::to_string(n);  // stored in English and shown by title_of
+        const std::string title = numbered_title(s.ui, name, kWord);
         if (std::none_of(s.journal.snapshots.lines.begin(), s.journal.snapshots.lines.end(),
-                         [&](const SnapshotLine& l) { return l.name == name; }))
+                         [&](const SnapshotLine& l) { return title_of(s.ui, l) == title; }))
             return name;
     }
 }
@@ -27,10 +34,10 @@ std::string fresh_snapshot_name(const Session& s) {
 void snapshot_details(Session& s, const SnapshotLine& line) {
     Ui& ui = s.ui;
     char name[stroke::kMaxNameBytes + 1];
-    std::snprintf(name, sizeof name, "%s", line.name.c_str());
+    const std::string title = title_of(ui, line);
+    std::snprintf(name, sizeof name, "%s", title.c_str());
     ImGui::SetNextItemWidth(-1);
-    if (ImGui::InputText("##name", name, sizeof name, ImGuiInputTextFlags_EnterReturnsTrue) && name[0] &&
-        line.name != name)
+    if (ImGui::InputText("##name", name, sizeof name, ImGuiInputTextFlags_EnterReturnsTrue) && name[0] && title != name)
         s.paint_thread->post(RenameSnapshot{line.id, name});
     ui.mark("Snapshot name");
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
@@ -68,13 +75,13 @@ void snapshots_section(Session& s) {
     for (const SnapshotLine& line : all.lines) {
         ImGui::PushID(line.id.c_str());
         const bool chosen = all.chosen == line.id;
+        const std::string title = title_of(ui, line);
         const std::string count = ui.sentence(Message(line.strokes == 1 ? "{} stroke" : "{} strokes", line.strokes));
         const float right = ImGui::CalcTextSize(count.c_str()).x, room = ImGui::GetContentRegionAvail().x,
                     x = ImGui::GetCursorPosX();
-        if (ui.entry(ui.fitted(line.name, room - right - ui.px(10)).c_str(), chosen))
-            all.chosen = chosen ? "" : line.id;
+        if (ui.entry(ui.fitted(title, room - right - ui.px(10)).c_str(), chosen)) all.chosen = chosen ? "" : line.id;
         ui.mark("snapshot " + line.name);
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s\n%s", line.name.c_str(), date_text(line.made).c_str());
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s\n%s", title.c_str(), date_text(line.made).c_str());
         ImGui::SameLine(x + room - right);
         ImGui::TextDisabled("%s", count.c_str());
         if (chosen) snapshot_details(s, line);
@@ -89,6 +96,7 @@ void comparison_bar(Session& s) {
     const SnapshotLine* line = find_snapshot(s, all.compared);
     if (!line || !s.paint_thread) return;
     Ui& ui = s.ui;
+    const std::string title = ui.fitted(title_of(ui, *line), ui.px(140));
     const auto left = static_cast<float>(all.swipe || all.width == 0 ? s.view.area.x : all.x),
                right = static_cast<float>(s.view.area.x + s.view.area.width);
     ImGui::SetNextWindowPos(ImVec2(0.5f * (left + right), static_cast<float>(s.view.area.y) + ui.px(10)),
@@ -98,7 +106,7 @@ void comparison_bar(Session& s) {
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);  // above the images
     ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(all.ready ? ui.fitted(line->name, ui.px(140)).c_str() : ui.tr("Painting the snapshot"));
+    ImGui::TextUnformatted(all.ready ? title.c_str() : ui.tr("Painting the snapshot"));
     ImGui::SameLine();
     if (ui.choice("Side by side", !all.swipe)) all.swipe = false;
     ImGui::SameLine();
@@ -111,7 +119,7 @@ void comparison_bar(Session& s) {
     if (all.ready) {
         const float middle = all.swipe ? static_cast<float>(s.view.area.x + all.line_at * s.view.area.width)
                                        : static_cast<float>(s.view.area.x);
-        draw_tag(s, ui.fitted(line->name, ui.px(140)), middle, true);
+        draw_tag(s, title, middle, true);
         draw_tag(s, ui.tr("Now"), middle, false);
     }
     if (restore) s.paint_thread->post(RestoreSnapshot{all.compared});

@@ -129,6 +129,12 @@ void accept_inspected(Session& s) {
 
 namespace {
 
+// How the model moved, which nothing else says where all strokes fit; else that the former project is safe.
+Message revision_note(const Revision& revision) {
+    if (revision.fit.size() > 1) return revision.fit[1];
+    return Message("The strokes are painted on the revised model; the former project is as it was.");
+}
+
 // A model or project is ready: it takes the place of the open one.
 void take_work(Session& s, PaintWork work) {
     Revision& revision = s.project.revision;
@@ -138,6 +144,7 @@ void take_work(Session& s, PaintWork work) {
     if (s.paint_thread && !s.journal.lines.empty() && is_unnamed(s.reported.file.project))
         remember_project(s.reported.file.project);
     Message note = std::move(work.note);
+    const Box former = s.paint_thread ? s.paint_thread->model().mesh->bounds : Box{};
     close_model(s);
     if (!s.project.closing.failure.empty()) note = s.project.closing.failure;
     s.paint_thread = start_paint_thread(s.project.recovery.note, std::move(work));
@@ -150,12 +157,11 @@ void take_work(Session& s, PaintWork work) {
         s.view.references.images.push_back(from_attachment(image));
     HelpState& help = s.panels.help;
     if (help.by_itself && !help.seen && help.step < 0) start_guide(help);
-    s.tools.symmetry.centre = s.paint_thread->model().mesh->bounds.centre();
-    show_message(s.status,
-                 source.empty()
-                     ? note
-                     : Message("The strokes are painted on the revised model; the former project is as it was."));
+    const Box& bounds = s.paint_thread->model().mesh->bounds;
+    s.tools.symmetry.centre = bounds.centre();
+    if (s.view.keep_camera && !former.empty()) s.view.orbit.follow(former, bounds);
     revision = std::move(next);
+    show_message(s.status, source.empty() ? note : revision_note(revision));
     s.dialogs.show_mismatches = !revision.mismatches.empty();
 }
 

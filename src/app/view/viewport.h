@@ -22,6 +22,10 @@ struct Orbit {
 
     /// Places the camera so that the whole box is visible.
     void frame(const Box& box);
+    /// Retains the picture of a model whose box has moved, or has moved and scaled: the target takes the same place in
+    /// the revised box and the distance scales. Boxes of other proportions: retains the camera; frames the revised box
+    /// where the target is outside it.
+    void follow(const Box& former, const Box& revised);
     /// Looks along an axis, in parallel projection until the next rotation, as in Blender.
     void look_from(StandardView view);
     /// Sets the projection permanently.
