@@ -1,7 +1,9 @@
 #include "footprint/outline/rough_edge.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/geometry/solid_noise.h"
 #include "footprint/outline/section_outline.h"
@@ -11,31 +13,48 @@ namespace {
 
 constexpr double kRun = 3e-3, kFineRun = 0.8e-3;  // metres along the path over which hair at the edge comes and goes
 constexpr double kEndRun = 2e-3;                  // over which a hair's own end changes
-constexpr double kFlank = 0.8, kFineFlank = 0.5;  // A: of the spacing
-constexpr double kEnd = 1.5;                      // B: of the spacing
+constexpr double kFlank = 0.4, kFineFlank = 0.3;  // A: of the spacing
+constexpr double kEnd = 0.7;                      // B: of the spacing
 constexpr double kOfFlank = 0.05;                 // (n·t)² up to which an edge is all flank
 constexpr double kCoarse = 0.1e-3;                // metres: D of coarser hair
 constexpr double kGrain = 0.35, kFilm = 10e-6;    // of the length of the grain; metres of ink that drown it
 constexpr double kHeld = 0.1;                     // part of hair's edge that ink on a smooth ground keeps
 constexpr double kLeastGrain = 4e-6;              // metres: G below which the grain is left out
-constexpr double kFull = 0.5, kGone = 1.25;       // cells over the detail's size between which it vanishes
-constexpr double kNarrow = 16;                    // spacings: width of a mark from which its edge is fully rough
-constexpr int kMostPoints = 48;                   // of one span of the spline
+// Cells, half a texel each, over the detail's size between which it vanishes.
+constexpr double kHairFull = 0.25, kHairGone = 0.75, kGrainFull = 0.5, kGrainGone = 1.25;
+constexpr double kNarrow = 16;    // spacings: width of a mark from which its edge is fully rough
+constexpr double kRunPoints = 4;  // points of the outline over the shorter run, along the path
+constexpr int kMostPoints = 48;   // of one span of the spline
 
-/// Noise in [−1, 1] with cells of one unit, blended by 3f² − 2f³.
-double plane_noise(double x, double y, std::uint64_t seed) {
-    const double cx = std::floor(x), cy = std::floor(y), gx = fade(x - cx), gy = fade(y - cy);
-    const auto i = static_cast<std::int64_t>(cx), j = static_cast<std::int64_t>(cy);
-    const auto along_x = [&](std::int64_t row) {
-        const double a = solid_noise_corner(i, row, 0, seed);
-        return a + gx * (solid_noise_corner(i + 1, row, 0, seed) - a);
-    };
-    const double a = along_x(j);
-    return a + gy * (along_x(j + 1) - a);
-}
+/// Noise in [−1, 1] with cells of one unit, blended by 3f² − 2f³. Points that follow each other often share a cell.
+class PlaneNoise {
+  public:
+    explicit PlaneNoise(std::uint64_t seed) : seed_(seed) {}
 
-double visible_part(double cell, double size) {
-    return smooth_step((kGone - cell / size) / (kGone - kFull));
+    double at(double x, double y) {
+        const double cx = std::floor(x), cy = std::floor(y), gx = fade(x - cx), gy = fade(y - cy);
+        if (!(cx == x_ && cy == y_)) find_corners(cx, cy);
+        const double a = corners_[0] + gx * (corners_[1] - corners_[0]),
+                     b = corners_[2] + gx * (corners_[3] - corners_[2]);
+        return a + gy * (b - a);
+    }
+
+  private:
+    void find_corners(double x, double y) {
+        x_ = x;
+        y_ = y;
+        const auto i = static_cast<std::int64_t>(x), j = static_cast<std::int64_t>(y);
+        for (int k = 0; k < 4; ++k) corners_[k] = solid_noise_corner(i + (k & 1), j + (k >> 1), 0, seed_);
+    }
+
+    std::uint64_t seed_;
+    double x_ = std::numeric_limits<double>::quiet_NaN(), y_ = 0;  // cell of the corners
+    std::array<double, 4> corners_{};
+};
+
+/// 1 where `cell` is `full` of `size` or less, 0 from `gone` on.
+double visible_part(double cell, double size, double full, double gone) {
+    return smooth_step((gone - cell / size) / (gone - full));
 }
 
 /// δ of one stamp.
@@ -44,27 +63,37 @@ class Displacement {
     Displacement(const PicturePlane& plane, const RoughEdge& edge)
         : plane_(plane),
           edge_(edge),
-          hair_(std::min(edge.hair.spacing, kCoarse) * visible_part(plane.cell, edge.hair.spacing)) {
+          hair_(std::min(edge.hair.spacing, kCoarse) *
+                visible_part(plane.cell, edge.hair.spacing, kHairFull, kHairGone)),
+          coarse_(edge.hair.seed),
+          fine_(edge.hair.seed + 1),
+          end_(edge.hair.seed + 2) {
         const EdgeGrain& g = edge.grain;
         hair_ *= kHeld + (1 - kHeld) * g.relief / (g.relief + kFilm);
         if (!(g.relief > 0)) return;
         const double whole = kGrain * g.length * g.relief / (g.relief + kFilm);
-        grain_ = whole > kLeastGrain ? whole * visible_part(plane.cell, g.length) : 0;
+        grain_ = whole > kLeastGrain ? whole * visible_part(plane.cell, g.length, kGrainFull, kGrainGone) : 0;
     }
 
     bool none() const { return !(hair_ > 0) && !(grain_ > 0); }
 
-    double at(const Vec2& p, const Vec2& normal) const {
+    /// Distances of points that resolve δ, along the hand's path and across it: a texel, but along the path of a hair
+    /// δ changes over millimetres.
+    Vec2 steps() const {
+        const double texel = 2 * plane_.cell;
+        return {grain_ > 0 ? texel : std::max(texel, kFineRun / kRunPoints), texel};
+    }
+
+    double at(const Vec2& p, const Vec2& normal) {
         double out = 0;
         if (hair_ > 0) {
             const EdgeHair& h = edge_.hair;
             const Vec2 d = p - h.foot;
             const double x = (h.direction.x * d.y - h.direction.y * d.x) / h.spacing;
             const double s = h.travel + glm::dot(h.direction, d), along = glm::dot(normal, h.direction);
-            out += hair_ *
-                   (kFlank * plane_noise(x, s / kRun, h.seed) + kFineFlank * plane_noise(x, s / kFineRun, h.seed + 1));
+            out += hair_ * (kFlank * coarse_.at(x, s / kRun) + kFineFlank * fine_.at(x, s / kFineRun));
             if (const double end = along * along - kOfFlank; end > 0)
-                out += hair_ * kEnd * end / (1 - kOfFlank) * plane_noise(x, s / kEndRun, h.seed + 2);
+                out += hair_ * kEnd * end / (1 - kOfFlank) * end_.at(x, s / kEndRun);
         }
         if (grain_ > 0) {
             const Vec3 q = plane_.frame.to_world(Vec3(p, 0)) / (2 * edge_.grain.length);
@@ -78,17 +107,20 @@ class Displacement {
     const PicturePlane& plane_;
     const RoughEdge& edge_;
     double hair_ = 0, grain_ = 0;  // metres
+    PlaneNoise coarse_, fine_, end_;
 };
 
-/// Points of the outline, `step` metres apart.
-Polygon points_of(const Outline& outline, double step) {
+/// Points of the outline, no more than `steps` metres apart along `direction` and across it.
+Polygon points_of(const Outline& outline, const Vec2& direction, const Vec2& steps) {
     const std::vector<Vec2>& c = outline.control;
     const std::size_t n = c.size();
     Polygon points;
     for (std::size_t k = 0; k < n && n >= 3; ++k) {
         const Vec2 &c0 = c[(k + n - 1) % n], &c1 = c[k], &c2 = c[(k + 1) % n], &c3 = c[(k + 2) % n];
-        const int count =
-            static_cast<int>(std::clamp(std::ceil(glm::length(c2 - c1) / step), 1.0, double(kMostPoints)));
+        const Vec2 d = c2 - c1;
+        const double along = std::abs(glm::dot(direction, d)) / steps.x,
+                     across = std::abs(direction.x * d.y - direction.y * d.x) / steps.y;
+        const int count = static_cast<int>(std::clamp(std::ceil(std::hypot(along, across)), 1.0, double(kMostPoints)));
         for (int i = 0; i < count; ++i) {
             const double f = double(i) / count, g = 1 - f;
             points.push_back((g * g * g * c0 + (3 * f * f * f - 6 * f * f + 4) * c1 +
@@ -110,7 +142,7 @@ double mean_width(const Polygon& curve) {
     return length > 0 ? 2 * std::abs(area) / length : 0;
 }
 
-void roughen(Polygon& curve, const Displacement& displacement, double scale) {
+void roughen(Polygon& curve, Displacement& displacement, double scale) {
     const std::size_t n = curve.size();
     const Polygon smooth = curve;
     for (std::size_t k = 0; k < n; ++k) {
@@ -125,13 +157,13 @@ void roughen(Polygon& curve, const Displacement& displacement, double scale) {
 }  // namespace
 
 Footprint rasterise(std::span<const Outline> outlines, const PicturePlane& plane, const RoughEdge& edge) {
-    const Displacement displacement(plane, edge);
+    Displacement displacement(plane, edge);
     if (displacement.none()) return rasterise(outlines, plane.frame, plane.triangle, plane.cell);
-    const double step = 2 * plane.cell;
+    const Vec2 steps = displacement.steps();
     std::vector<Polygon> curves;
     curves.reserve(outlines.size());
     for (const Outline& outline : outlines) {
-        Polygon curve = points_of(outline, step);
+        Polygon curve = points_of(outline, edge.hair.direction, steps);
         roughen(curve, displacement, std::min(1.0, mean_width(curve) / (kNarrow * edge.hair.spacing)));
         curves.push_back(std::move(curve));
     }

@@ -209,9 +209,11 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
     stamp.leapt = !shape.leapt.empty();
     if (options_.tones && !carried) {
         if (!motion.touching) tone_.clear();
-        tone_.update(shape.edge, options_.closed.cell, tuft.brush.reservoir, bundles,
-                     [&] { return footprint::hair_contact_points(trails, bundles, branches); });
-        stamp.tone = tone_.at(shape.edge, contact.frame, 1 - static_cast<double>(stamp.separation));
+        if (const double contrast = 1 - static_cast<double>(stamp.separation); contrast > 0) {
+            tone_.update(shape.edge, options_.closed.cell, tuft.brush.reservoir, bundles,
+                         [&] { return footprint::hair_contact_points(trails, bundles, branches); });
+            stamp.tone = tone_.at(shape.edge, contact.frame, contrast);
+        }
     }
     previous_ = std::move(uncovered);
     previous_frame_ = contact.frame;

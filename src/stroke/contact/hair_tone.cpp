@@ -12,11 +12,12 @@ namespace tuft::stroke {
 namespace {
 
 constexpr double kOfLoad = 0.5;                       // part of the difference in load that shows in the film
-constexpr double kStrands = 0.05;                     // rms of the film over strands
+constexpr double kStrands = 0.04;                     // rms of the film over strands
 constexpr double kStrand = 0.16e-3, kChange = 20e-3;  // metres across a strand, and along, over which it changes
 constexpr double kFull = 0.25, kGone = 0.625;         // cells, half a texel each, over a strand
 constexpr double kReach = 1.5;                        // spacings of bundles over which a load is averaged
 constexpr double kLeastSpan = 0.2e-3;                 // metres
+constexpr float kSeen = 0.01F;                        // departure from the mean that is seen
 
 double beside(const footprint::EdgeHair& edge, const Vec2& at) {
     const Vec2 d = at - edge.foot;
@@ -49,9 +50,39 @@ struct Sums {
     }
 };
 
-double strand_noise(double x, double s, std::uint64_t seed) {
-    return solid_noise({x, s, 0.5}, seed) / std::sqrt(kSolidNoiseSquare);
-}
+/// Value noise over strands at one place along the path, of unit rms.
+class StrandNoise {
+  public:
+    StrandNoise(double along, std::uint64_t seed) : seed_(seed) {
+        const double row = std::floor(along);
+        row_ = static_cast<std::int64_t>(row);
+        blend_ = fade(along - row);
+    }
+
+    double at(double x) {
+        const double strand = std::floor(x);
+        const auto i = static_cast<std::int64_t>(strand);
+        if (!(strand_ == i && begun_)) {
+            left_ = begun_ && strand_ + 1 == i ? right_ : corner(i);
+            right_ = corner(i + 1);
+            strand_ = i;
+            begun_ = true;
+        }
+        return std::lerp(left_, right_, fade(x - strand)) / rms();
+    }
+
+  private:
+    /// Of values uniform in [−1, 1], each blended along x and along the path: ⅓ (26/35)².
+    static double rms() { return std::sqrt(1.0 / 3) * 26 / 35; }
+    double corner(std::int64_t i) const {
+        return std::lerp(solid_noise_corner(i, row_, 0, seed_), solid_noise_corner(i, row_ + 1, 0, seed_), blend_);
+    }
+
+    std::uint64_t seed_;
+    std::int64_t row_ = 0, strand_ = 0;
+    double blend_ = 0, left_ = 0, right_ = 0;
+    bool begun_ = false;
+};
 
 }  // namespace
 
@@ -82,16 +113,20 @@ void HairTone::compute(const footprint::EdgeHair& edge, double cell, const ink::
     if (!(load > 0)) return;
     const double mean = load / weight;
     const double strands = kStrands * smooth_step((kGone - cell / kStrand) / (kGone - kFull));
+    StrandNoise noise(edge.travel / kChange, edge.seed + 3);
     double sum = 0;
     for (int i = 0; i < n; ++i) {
         const double relative = sums.weight[i] > 0 ? sums.load[i] / sums.weight[i] / mean : 1;
         double film = 1 + kOfLoad * (relative - 1);
-        if (strands > 0)
-            film += strands * strand_noise((lo + i / per_metre) / kStrand, edge.travel / kChange, edge.seed + 3);
+        if (strands > 0) film += strands * noise.at((lo + i / per_metre) / kStrand);
         film_[i] = static_cast<float>(std::max(film, 0.0));
         sum += static_cast<double>(film_[i]);
     }
-    for (float& f : film_) f *= static_cast<float>(n / sum);
+    even_ = true;
+    for (float& f : film_) {
+        f *= static_cast<float>(n / sum);
+        even_ = even_ && std::abs(f - 1) < kSeen;
+    }
     from_ = lo;
     to_ = hi;
     updated_at_ = edge.travel;
@@ -100,7 +135,7 @@ void HairTone::compute(const footprint::EdgeHair& edge, double cell, const ink::
 
 ink::FilmTone HairTone::at(const footprint::EdgeHair& edge, const Frame& frame, double contrast) const {
     ink::FilmTone tone;
-    if (!computed_ || !(contrast > 0)) return tone;
+    if (!computed_ || even_ || !(contrast > 0)) return tone;
     const Vec2 left{-edge.direction.y, edge.direction.x};
     tone.even = false;
     tone.origin = frame.to_world(Vec3(edge.foot + from_ * left, 0));

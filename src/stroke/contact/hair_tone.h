@@ -12,16 +12,16 @@
 ///
 /// At the distance x beside the path of the hand
 ///
-///     film(x) = 1 + 0.5 (L(x) − 1) + 0.05 w k(x / 0.16 mm, travel / 20 mm),    divided by its mean,
+///     film(x) = 1 + 0.5 (L(x) − 1) + 0.04 w k(x / 0.16 mm, travel / 20 mm),    divided by its mean,
 ///
 /// L(x) is the load of the touching bundles round x relative to their mean: saturation times `Bundles::holds`, weighted
 /// by their length on the surface. k is value noise, of unit rms: strands of a few hairs. w falls from 1 to 0 where a
-/// texel grows from half of a strand to 1.25 of it.
+/// texel grows from half of a strand to 1.25 of it. A profile within 1 % of its mean is even: nobody sees it.
 namespace tuft::stroke {
 
 class HairTone {
   public:
-    /// Computes the profile anew where the hand has gone 0.25 mm since the last time. `points`: of the touching hair,
+    /// Computes the profile anew where the hand has gone 0.5 mm since the last time. `points`: of the touching hair,
     /// called then. `edge`: hair and hand at this pose; `cell`: metres, of the footprint.
     template <class Points>
     void update(const footprint::EdgeHair& edge, double cell, const ink::Reservoir& reservoir,
@@ -36,11 +36,11 @@ class HairTone {
     ink::FilmTone at(const footprint::EdgeHair& edge, const Frame& frame, double contrast) const;
 
   private:
-    static constexpr double kStep = 0.25e-3;  // metres of travel
+    static constexpr double kStep = 0.5e-3;  // metres of travel
     void compute(const footprint::EdgeHair& edge, double cell, const ink::Reservoir& reservoir,
                  const brush::Bundles& bundles, std::span<const footprint::HairContactPoint> points);
 
-    bool computed_ = false;
+    bool computed_ = false, even_ = true;
     double updated_at_ = 0;
     double from_ = 0, to_ = 0;  // metres beside the path of the hand: first and last sample
     std::array<float, ink::kToneSamples> film_;

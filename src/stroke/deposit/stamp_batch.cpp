@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <optional>
 
 #include "core/system/parallel.h"
 
@@ -70,7 +71,7 @@ void StampBatch::write_tile(std::span<const TileStamp> stamps, std::span<const i
     const MaskTexels* mask = target_.mask();
     if (mask && mask->none(slot)) return;
     alignas(64) std::array<float, atlas::kTileTexels> tone;
-    const bool toned = erased.empty() && find_tone(slot, batch_[stamps[stamps.size() / 2].stamp], tone);
+    std::optional<bool> toned;
     for (std::size_t k = 0; k < stamps.size(); ++k) {
         const footprint::StampJobs& plan = plans_[stamps[k].stamp];
         if (!footprint::evaluate_tile(target_.texels(), plan, plan.tiles[stamps[k].tile], unpacked, exposure)) continue;
@@ -81,9 +82,10 @@ void StampBatch::write_tile(std::span<const TileStamp> stamps, std::span<const i
                                    {.strength = stamp.erases});
             continue;
         }
+        if (!toned) toned = find_tone(slot, batch_[stamps[stamps.size() / 2].stamp], tone);
         if (stamp.by_hair) target_.expose_grain(slot, exposure, stamp.grain_film);
         given[k] = ink::deposit(target_.canvas(), slot, exposure, tile.area, stamp.ink, laws[stamps[k].stamp],
-                                toned ? std::span<const float>(tone) : std::span<const float>());
+                                *toned ? std::span<const float>(tone) : std::span<const float>());
     }
 }
 
