@@ -11,7 +11,7 @@
 ///
 /// Each point of an outline moves along its outward unit normal n by
 ///
-///     δ = w D (A h(x, s) + B c k(x, s)) + w' G r(P),   D = min(d, 0.1 mm) (0.1 + 0.9 ζ / (ζ + 10 µm)),
+///     δ = w D (A h(x, s) + B c k(x, s)) + w' G r(P),   D = min(d, 0.1 mm) (0.3 + 0.7 ζ / (ζ + 10 µm)),
 ///
 /// with the rms height ζ of the ground's grain: on a smooth glaze the ink's own surface draws the edge straight.
 /// x = t × (p − foot) / d, the number of hairs beside the hand's path, s = travel + t · (p − foot), the place along it,
