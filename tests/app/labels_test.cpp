@@ -85,5 +85,14 @@ TEST(Labels, OfTheShippedInksAreToldApartInBothLanguagesAtEachScale) {
     }
 }
 
+TEST(Labels, PartsOfARecipeAreBrokenBetweenThemAlone) {
+    const std::vector<std::string> parts{"27.4 % red, ", "5.65 % black, ", "65.2 % water ", "(20 \xce\xbcm)"};
+    EXPECT_EQ(lines_of(parts, 100, characters), "27.4 % red, 5.65 % black, 65.2 % water (20 \xce\xbcm)");
+    EXPECT_EQ(lines_of(parts, 25, characters), "27.4 % red, 5.65 % black,\n65.2 % water (20 \xce\xbcm)");
+    EXPECT_EQ(lines_of(parts, 24, characters), "27.4 % red,\n5.65 % black,\n65.2 % water (20 \xce\xbcm)");
+    EXPECT_EQ(lines_of(parts, 1, characters), "27.4 % red,\n5.65 % black,\n65.2 % water\n(20 \xce\xbcm)");
+    EXPECT_EQ(lines_of({}, 10, characters), "");
+}
+
 }  // namespace
 }  // namespace tuft::app

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include "app/panels/panels.h"
+#include "app/widgets/labels.h"
 #include "ink/spectra/srgb.h"
 
 /// \file
@@ -143,19 +146,19 @@ void result(Session& s) {
                   "E %.1f: %s",
                   c.match->delta_e, ui.tr(ink::difference_in_words(c.match->delta_e)));
     ui.wrapped(text);
-    std::string recipe;
-    for (const ink::InkPart& part : c.match->ink.parts) {
-        std::snprintf(text, sizeof text, "%s%.3g %% %s", recipe.empty() ? "" : ", ", 100 * part.fraction,
-                      ui.tr(pigment_key(part.pigment.name).c_str()));
-        recipe += text;
-    }
-    if (const double water = 1 - c.match->ink.strength(); water > 5e-4) {
-        std::snprintf(text, sizeof text, ", %.3g %% %s", 100 * water, ui.tr("water"));
-        recipe += text;
-    }
-    std::snprintf(text, sizeof text, " (%.0f \xce\xbcm, %s)", kUnitUm * c.match->ink.film,
+    std::vector<std::string> parts;
+    const auto add = [&](double fraction, const char* name) {
+        if (!parts.empty()) parts.back() += ", ";
+        std::snprintf(text, sizeof text, "%.3g %% %s", 100 * fraction, ui.tr(name));
+        parts.emplace_back(text);
+    };
+    for (const ink::InkPart& part : c.match->ink.parts) add(part.fraction, pigment_key(part.pigment.name).c_str());
+    if (const double water = 1 - c.match->ink.strength(); water > 5e-4) add(water, "water");
+    if (!parts.empty()) parts.back() += " ";
+    std::snprintf(text, sizeof text, "(%.0f \xce\xbcm, %s)", kUnitUm * c.match->ink.film,
                   ui.tr(s.colours.appearance.painted_on.c_str()));
-    ui.note(recipe + text);
+    parts.emplace_back(text);
+    ui.note(lines_of(parts, width, [](const std::string& line) { return ImGui::CalcTextSize(line.c_str()).x; }));
 }
 
 void recent(Session& s) {

@@ -93,4 +93,20 @@ std::vector<std::string> tell_apart(const std::vector<std::string>& names, const
     return labels;
 }
 
+std::string lines_of(const std::vector<std::string>& texts, float width,
+                     const std::function<float(const std::string&)>& width_of) {
+    std::string all, line;
+    for (const std::string& text : texts) {
+        std::string longer = line + text;
+        const std::size_t end = longer.find_last_not_of(' ') + 1;
+        if (!line.empty() && width_of(longer.substr(0, end)) > width) {
+            line.resize(line.find_last_not_of(' ') + 1);
+            all += line + '\n';
+            longer = text;
+        }
+        line = std::move(longer);
+    }
+    return all + line;
+}
+
 }  // namespace tuft::app

@@ -20,4 +20,9 @@ struct LabelRoom {
 /// different names are different. UTF-8.
 std::vector<std::string> tell_apart(const std::vector<std::string>& names, const LabelRoom& room);
 
+/// Joins texts to lines of at most that width: a text begins a new line where it does not fit, and is never broken.
+/// Spaces at the end of a line count for nothing.
+std::string lines_of(const std::vector<std::string>& texts, float width,
+                     const std::function<float(const std::string&)>& width_of);
+
 }  // namespace tuft::app
