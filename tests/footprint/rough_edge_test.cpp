@@ -89,6 +89,14 @@ TEST(RoughEdge, KeepsTheMeanWidth) {
     EXPECT_NEAR(sum, 1, 0.002);
 }
 
+// On glaze without relief w D is 0.3 · 90 µm · 0.34 at cells of 50 µm: less than 0.2 texels.
+TEST(RoughEdge, OnSmoothGlazeIsLeftOutOnCoarseTexels) {
+    RoughEdge glaze = hair(1);
+    glaze.grain = {};
+    EXPECT_EQ(picture(50e-6, glaze).coverage, picture(50e-6, {}).coverage);
+    EXPECT_NE(picture(15e-6, glaze).coverage, picture(15e-6, {}).coverage);
+}
+
 // Value noise with cells of one spacing: next to each other places differ little, from one hair to the next they are
 // independent.
 TEST(RoughEdge, OfAnEndHasTheSpacingOfTheHair) {

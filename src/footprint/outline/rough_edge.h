@@ -13,7 +13,7 @@
 ///
 ///     δ = w D (A h(x, s) + B c k(x, s)) + w' G r(P),   D = min(d, 0.1 mm) (0.3 + 0.7 ζ / (ζ + 10 µm)),
 ///
-/// with the rms height ζ of the ground's grain: on a smooth glaze the ink's own surface draws the edge straight.
+/// with the rms height ζ of the substrate's grain: on a smooth glaze the ink's own surface draws the edge straight.
 /// x = t × (p − foot) / d, the number of hairs beside the hand's path, s = travel + t · (p − foot), the place along it,
 /// t the unit direction of the hand. While the hand goes straight on, x and s of a place on the surface do not change,
 /// so the edge that the stamps leave together is the displaced edge. h and k are value noise with cells of one hair
@@ -23,8 +23,9 @@
 /// + 10 µm), with length l and rms height ζ of the grain. The mean of δ is 0.
 ///
 /// w falls from 1 to 0 where a cell, half a texel, grows from a quarter of the spacing to three quarters, w' from half
-/// of l to 1.25 of it: detail below a texel vanishes. At arm's length the edge is smooth: at the flanks δ stays
-/// within 0.07 mm. In marks narrower than sixteen hairs δ is reduced in proportion.
+/// of l to 1.25 of it: detail below a texel vanishes. Where w D is less than 0.2 texels the
+/// hair's part is left out: its rms would be 0.04 texels at the flanks, 0.08 at the ends. In marks narrower than
+/// sixteen hairs δ is reduced in proportion.
 namespace tuft::footprint {
 
 /// Hair at the edge, and its motion.
