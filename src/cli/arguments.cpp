@@ -86,7 +86,10 @@ CLI::App* add_decimate(CLI::App& app, Decimate& decimate) {
     command->add_option("-o,--output", decimate.output, "write the working copy (.ply)")->required();
     command->add_option("--triangles", decimate.triangles, "most triangles of the copy")
         ->check(number_in(4, kMostTexels, "POSITIVE"));
-    command->add_option("--error", decimate.error_mm, "collapse no edge that moves the surface by more, in millimetres")
+    command
+        ->add_option("--error", decimate.error_mm,
+                     "collapse no edge that moves the surface by more, in millimetres, as a mean; single vertices may "
+                     "lie some times as far, and how far is printed")
         ->check(number_in(1e-9, kFarthestMm, "POSITIVE"));
     add_reading(command, decimate, "unit of the model file (default: a guess from its size)");
     add_common(command, decimate.common);
@@ -301,10 +304,10 @@ CLI::App* add_ink(CLI::App& app, InkWork& ink) {
         ->add_option(
             "--film", ink.film,
             "thickness of the wet film in film units of 10 um (default, or 0: 2, or 4 or 8 where the colour needs it)")
-        ->check(CLI::Range(0.0, ink::kThickestMix));
+        ->check(number_in(0.0, ink::kThickestMix));
     match->add_option("--pigments", ink.pigments, "choose from these pigments only: NAME,... or FILE.toml,...")
         ->delimiter(',');
-    match->add_option("--parts", ink.parts, "most pigments in the mix")->check(CLI::Range(1, 4));
+    match->add_option("--parts", ink.parts, "most pigments in the mix")->check(number_in(1, 4));
     match->add_option("-o,--output", ink.output, "write the mix as an ink (.toml), for --ink");
     add_common(match, ink.common);
     add_common(command, ink.common);

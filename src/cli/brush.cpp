@@ -151,15 +151,17 @@ int calibrate(const Brush& a) {
 }
 
 void print_matches(std::span<const brush::BrushMatch> matches) {
-    fmt::print("{:<16}{:>9}{:>9}{:>9}{:>9}   at its best size\n", "rms, mm", "width", "contact", "offset", "misfit");
+    fmt::print("{:<16}{:>9}{:>9}{:>9}{:>12}   at its best size\n", "rms, mm", "width", "contact", "offset",
+               "fit error");
     for (const brush::BrushMatch& m : matches) {
         fmt::print("{:<16}", m.name);
         for (double brush::SweepRow::*column : brush::kSweepColumns) fmt::print("{:>9}", millimetres(m.rms.*column));
-        fmt::print("{:>9}", std::isfinite(m.misfit) ? fmt::format("{:.2f}", m.misfit) : "-");
+        fmt::print("{:>12}", std::isfinite(m.misfit) ? fmt::format("{:.2f}", m.misfit) : "-");
         if (std::isfinite(m.sized_misfit)) fmt::print("   {:.2f} at x {:.2f}", m.sized_misfit, m.size);
         fmt::print("\n");
     }
-    fmt::print("\nMisfit: rms over what a ruler repeats to (1.4, 0.5 and 0.7 mm with hair of 30 mm); -: too short.\n");
+    fmt::print(
+        "\nFit error: rms over what a ruler repeats to (1.4, 0.5 and 0.7 mm with hair of 30 mm); -: too short.\n");
 }
 
 int match(const Brush& a) {
@@ -175,10 +177,10 @@ int match(const Brush& a) {
     nlohmann::json j{{"brushes", nlohmann::json::array()}};
     for (const brush::BrushMatch& m : matches)
         j["brushes"].push_back({{"name", m.name},
-                                {"misfit", m.misfit},  // null where it is too short
+                                {"fit_error", m.misfit},  // null where it is too short
                                 {"rms", row_json(m.rms)},
                                 {"best_size", m.size},
-                                {"misfit_at_best_size", m.sized_misfit}});
+                                {"fit_error_at_best_size", m.sized_misfit}});
     print_json(j);
     return 0;
 }

@@ -31,6 +31,9 @@ double farthest(const mesh::TriangleMesh& full, const mesh::TriangleMesh& copy) 
 int run(const Decimate& a) {
     check_extension(a.output, {".ply"});
     check_output(a.output);
+    std::error_code none_yet;
+    if (std::filesystem::equivalent(a.output, a.model, none_yet))
+        throw UsageError("--output is the model itself: give the working copy another name");
     if (a.triangles == 0 && !(a.error_mm > 0)) throw UsageError("say how far: --triangles N, --error MM or both");
     Console console(a.common.quiet);
     const auto [model, frame] = load_bare(a.model, a, console);

@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/options.h"
+
 namespace tuft::cli {
 
 void add_drawing_options(CLI::App& command, Paint& paint) {
@@ -17,7 +19,7 @@ void add_drawing_options(CLI::App& command, Paint& paint) {
                     "lines of a drawing in one ink are masked and filled from this width on, with the ends, corners "
                     "and dashes of the file; narrower ones, and all with --areas brush, --brush or --erase, are "
                     "strokes of a brush")
-        ->check(CLI::Range(0.0, 1e6))
+        ->check(number_in(0.0, 1e6))
         ->type_name("MM");
     command
         .add_option("--edges", paint.edges,
@@ -27,7 +29,8 @@ void add_drawing_options(CLI::App& command, Paint& paint) {
                     "edges along the surface (--mapping wrap)")
         ->check(CLI::IsMember({"cut", "run-over", "end-before", "wrap"}));
     command.add_option("--edge-margin", paint.edge_margin_mm, "distance that end-before leaves")
-        ->check(CLI::Range(0.01, 1000.0))
+        ->check(number_in(0.01, 1000.0))
+        ->needs("--edges")
         ->type_name("MM");
     command
         .add_option("--only", paint.only, "only these layers and named groups of an .svg: NAME, more by another --only")
@@ -44,6 +47,7 @@ void add_drawing_options(CLI::App& command, Paint& paint) {
         .add_option("--repeat", paint.repeat,
                     "with --along: fit (default), as many copies as the path has room for, made to meet; or a "
                     "number of copies, evenly spaced, which meet unless --place-width gives their width")
+        ->needs("--along")
         ->type_name("fit|N");
     command
         .add_option("--mirror", paint.mirror,
@@ -56,7 +60,7 @@ void add_drawing_options(CLI::App& command, Paint& paint) {
         "with --mirror: groups of an .svg with the class 'readable' (or data-readable) are not mirrored, such "
         "as lettering; they stay where the mirror puts them");
     command.add_option("--radial", paint.radial, "copies round the middle of the model, with the original")
-        ->check(CLI::Range(1, 32))
+        ->check(number_in(1, 32))
         ->type_name("N");
     command.add_option("--radial-axis", paint.radial_axis, "axis of --radial")->check(CLI::IsMember({"x", "y", "z"}));
     command.add_flag("--auto-texel", paint.auto_texel,

@@ -276,6 +276,8 @@ MeshFacts mesh_facts(const Inspect& a, const ProgressFn& progress) {
     }
     MeshFacts facts{
         .summary = mesh::summarise(surface, options.metres_per_unit), .uvs = {}, .quality = {}, .uv_notes = {}};
+    if (fixed)
+        facts.summary.unit = {.unit = "m", .metres_per_unit = *fixed, .second = {}, .sentence = "as the file says"};
     if (facts.summary.has_uvs) {
         facts.uvs = atlas::check_file_uvs(surface.mesh, kPage);
         facts.quality = atlas::measure(surface.mesh, facts.uvs.atlas);

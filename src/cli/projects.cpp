@@ -99,8 +99,9 @@ int print_in_filaments(const Export& a, const std::vector<ink::Filament>& filame
                                   {"triangles", painted.triangles.size()},
                                   {"mean_delta_e_2000", painted.mean_delta_e}});
     else
-        fmt::print("{} triangles in {} filaments, mean colour difference {:.2f} (CIEDE2000)\nwrote {}\n",
-                   painted.triangles.size(), filaments.size(), painted.mean_delta_e, a.output.string());
+        fmt::print("{} in {}, mean colour difference {:.2f} (CIEDE2000)\nwrote {}\n",
+                   counted(painted.triangles.size(), "triangle"), counted(filaments.size(), "filament"),
+                   painted.mean_delta_e, a.output.string());
     return 0;
 }
 
@@ -193,6 +194,8 @@ int run(const Replay& a) {
     } else {
         fmt::print("replayed {}, {} of them miss{} the model; atlas {} x {}\n", counted(reports.size(), "stroke"),
                    missed, missed == 1 ? "es" : "", model.atlas.size, model.atlas.size);
+        for (const std::filesystem::path& path : {a.out_project, outputs.exported, outputs.preview, a.moved})
+            if (!path.empty()) fmt::print("wrote {}\n", path.string());
     }
     return 0;
 }

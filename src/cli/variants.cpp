@@ -92,7 +92,7 @@ void count_strokes(variants::Figures& f, const stroke::JournalEntry& entry, cons
     if (report.unconverged > 0) ++f.unconverged;
     if (stroke::on_palette(entry)) return;
     const std::size_t i = n_on_model++;
-    if (!report.touched() || (i < off.size() && off[i])) ++f.misfits;
+    if (!report.touched() || (i < off.size() && off[i])) ++f.mismatches;
 }
 
 /// Looks at the middle of the drawing.

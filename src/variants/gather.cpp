@@ -95,7 +95,7 @@ std::vector<Row> gather(const Jobs& jobs) {
 std::string csv_of(const Jobs& jobs, const std::vector<Row>& rows) {
     std::string out =
         "task,hash,name,model,strokes_file,ink,brush,tolerance,sample,state,canvas_hash,ink_area_mm2,ink_mm3,strokes,"
-        "dry,misfits,unconverged,seconds,fault\n";
+        "dry,mismatches,unconverged,seconds,fault\n";
     for (const Row& r : rows) {
         const Task& t = r.task;
         const Figures& f = r.figures;
@@ -104,7 +104,7 @@ std::string csv_of(const Jobs& jobs, const std::vector<Row>& rows) {
                            csv_field(t.tolerance.name), t.sample, word_of(r.state));
         out += r.state == State::done
                    ? fmt::format(",{},{:.6g},{:.6g},{},{},{},{},{:.3f},\n", f.canvas_hash, f.ink_area_mm2, f.ink_mm3,
-                                 f.strokes, f.dry, f.misfits, f.unconverged, f.seconds)
+                                 f.strokes, f.dry, f.mismatches, f.unconverged, f.seconds)
                    : fmt::format(",,,,,,,,,{}\n", csv_field(r.fault));
     }
     return out;
@@ -130,7 +130,7 @@ std::string json_of(const Jobs& jobs, const std::vector<Row>& rows) {
                         {"ink_mm3", f.ink_mm3},
                         {"strokes", f.strokes},
                         {"dry", f.dry},
-                        {"misfits", f.misfits},
+                        {"mismatches", f.mismatches},
                         {"unconverged", f.unconverged},
                         {"seconds", f.seconds}});
         if (!r.fault.empty()) row["fault"] = r.fault;

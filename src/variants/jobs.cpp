@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace tuft::variants {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Figures, canvas_hash, ink_area_mm2, ink_mm3, strokes, dry, misfits, unconverged,
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Figures, canvas_hash, ink_area_mm2, ink_mm3, strokes, dry, mismatches, unconverged,
                                    seconds, view_deg, substrate)
 
 namespace {

@@ -26,7 +26,7 @@ struct Figures {
     double ink_mm3 = 0;            ///< volume of ink that strokes and areas left
     std::size_t strokes = 0;       ///< of them all the next three count some
     std::size_t dry = 0;           ///< `StrokeReport::ran_dry`
-    std::size_t misfits = 0;       ///< that touch nothing, or have more than a tenth of their samples off the surface
+    std::size_t mismatches = 0;    ///< that touch nothing, or have more than a tenth of their samples off the surface
     std::size_t unconverged = 0;   ///< with stamps that were solved only to the iteration limit
     double seconds = 0;            ///< of painting and drawing
     std::vector<double> view_deg;  ///< [2] azimuth and elevation of the picture

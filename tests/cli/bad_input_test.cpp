@@ -265,9 +265,13 @@ TEST_F(BadInput, NumbersThatAreNoNumbers) {
         0);
     const std::string paint = "paint " + sheet() + " --strokes " + good_strokes() + " ";
     for (const char* bad : {"nan", "-nan", "inf", "1e999", "0x10", "3mm", "-1e308"}) {
-        for (const char* option : {"--dry", "--smooth", "--stabilise", "--place-width", "--place-turn", "--texel-size",
-                                   "--atlas-size", "--zoom", "--light", "--sharp-angle", "--pages", "--threads"})
+        for (const char* option :
+             {"--dry", "--smooth", "--stabilise", "--place-width", "--place-turn", "--texel-size", "--wide-lines",
+              "--radial", "--atlas-size", "--zoom", "--light", "--sharp-angle", "--pages", "--threads"})
             expect_refused(paint + option + "=" + bad, 2, option);
+        expect_refused(paint + "--edges end-before --edge-margin=" + bad, 2, "--edge-margin");
+        for (const char* option : {"--film", "--parts"})
+            expect_refused(std::string("ink match '#603010' ") + option + "=" + bad, 2, option);
         for (const char* option : {"--film", "--to-film"})
             expect_refused("fill " + path("p.tuft") + " " + option + "=" + bad, 2, option);
         for (const char* option : {"--within", "--soft"})
@@ -280,6 +284,12 @@ TEST_F(BadInput, NumbersThatAreNoNumbers) {
         EXPECT_EQ(ran.status, 2);
         EXPECT_LT(ran.err.size(), 200u) << "no range of 300 digits: " << ran.err;
     }
+}
+
+TEST_F(BadInput, OptionsThatWouldDoNothingAlone) {
+    const std::string paint = "paint " + sheet() + " --strokes " + good_strokes() + " ";
+    expect_refused(paint + "--repeat 3", 2, "--along");
+    expect_refused(paint + "--edge-margin 3", 2, "--edges");
 }
 
 TEST_F(BadInput, ValuesThatAreEmpty) {

@@ -66,10 +66,24 @@ TEST_F(FilmCommand, LeavesNoHalfFilm) {
     EXPECT_EQ(failed.error_lines(), 1) << failed.err;
     const Ran stopped = tuft(film + " --seconds 600", "timeout -s INT 2");
     EXPECT_NE(stopped.status, 0);
+    const Ran frames = tuft("film " + p + kView + "-o " + path("frames") + " --seconds 600", "timeout -s INT 2");
+    EXPECT_NE(frames.status, 0);
     const Ran none = tuft(film, "PATH=/nonexistent");
     EXPECT_EQ(none.status, 1);
     EXPECT_NE(none.err.find("ffmpeg"), std::string::npos) << none.err;
     EXPECT_EQ(files(), before);
+}
+
+// ffmpeg of its own accord ends a film that the disk has no room for with status 0 where the last bytes are missing.
+TEST_F(FilmCommand, LeavesNoFilmOnAFullDisk) {
+    const std::string film = "film " + project() + kView + "--seconds 0.2 --end 0 --no-cache --quiet -o ";
+    for (const char* name : {"f.gif", "f.mp4", "frames"}) {
+        // KiB: less than a film of these pictures.
+        const Ran ran = tuft(film + path(name), "trap '' XFSZ; ulimit -f 1;");
+        EXPECT_EQ(ran.status, 1) << name;
+        EXPECT_EQ(ran.error_lines(), 1) << ran.err;
+        EXPECT_FALSE(fs::exists(path(name)));
+    }
 }
 
 TEST_F(FilmCommand, RefusesBadCamerasInOneLine) {

@@ -25,6 +25,7 @@ TEST_F(ModelFiles, CadIsInspectedWithItsUnitItsGroupsAndItsChord) {
     EXPECT_EQ(box["triangles"], 12);
     EXPECT_NEAR(box["area_cm2"].get<double>(), 22, 1e-4);  // 30 x 20 x 10 mm, in floats
     EXPECT_NEAR(box["size_mm"][0].get<double>(), 30, 1e-4);
+    EXPECT_EQ(box["unit_note"], "as the file says") << "its numbers are no guess";
     EXPECT_EQ(run_json("inspect --groups faces " + corpus("stp/box.stp"))["groups"].size(), 6u);
     const json coarse = run_json("inspect --chord 0.01 " + corpus("igs/cylinder.igs"));
     const json fine = run_json("inspect --chord 0.0001 " + corpus("igs/cylinder.igs"));
@@ -66,6 +67,15 @@ TEST_F(ModelFiles, AWorkingCopyHasFewTrianglesNearTheModel) {
     // The quadric error is a mean over planes: the greatest distance is some times as large.
     EXPECT_LT(by_distance["distance_mm"].get<double>(), 5 * 0.05);
     EXPECT_EQ(tuft("decimate " + model("vase.ply") + " -o " + path("x.ply")).status, 2) << "how far is not said";
+}
+
+TEST_F(ModelFiles, AWorkingCopyDoesNotReplaceItsModel) {
+    const std::string scan = write("scan.ply", read(model("sheet.ply")));
+    const std::string before = read(scan);
+    const Ran ran = tuft("decimate " + scan + " -o " + scan + " --triangles 10");
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_EQ(ran.error_lines(), 1) << ran.err;
+    EXPECT_EQ(read(scan), before);
 }
 
 TEST_F(ModelFiles, StrokesPaintedOnAWorkingCopyLieOnTheFullModelToo) {

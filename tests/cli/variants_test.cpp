@@ -98,7 +98,7 @@ TEST_F(Variants, OneAndFourWorkersGiveTheSameTable) {
     EXPECT_EQ(one, table("four"));
     for (const auto& [i, row] : one) {
         EXPECT_EQ(row["state"], "done");
-        EXPECT_EQ(row["misfits"], 0);
+        EXPECT_EQ(row["mismatches"], 0);
         EXPECT_GT(row["ink_area_mm2"].get<double>(), 1);
     }
 }

@@ -48,18 +48,30 @@ fs::path frame_path(const fs::path& folder, int number) {
     return folder / fmt::format("frame-{:05}.png", number);
 }
 
+/// Frames in a folder; they are removed where this is left before `finish`.
 class FrameFolder : public FilmSink {
   public:
     explicit FrameFolder(fs::path folder) : folder_(std::move(folder)) {
         std::error_code ec;
-        fs::create_directory(folder_, ec);
+        made_ = fs::create_directory(folder_, ec);
         if (!fs::is_directory(folder_, ec)) throw Error(folder_.string(), "cannot be made");
     }
+    ~FrameFolder() override {
+        std::error_code ec;
+        if (finished_) return;
+        for (int k = 1; k <= count_; ++k) fs::remove(frame_path(folder_, k), ec);
+        if (made_) fs::remove(folder_, ec);
+    }
+    FrameFolder(const FrameFolder&) = delete;
+    FrameFolder& operator=(const FrameFolder&) = delete;
+
     void add(const PixelView& frame) override { write_image(frame_path(folder_, ++count_), frame); }
+    void finish() { finished_ = true; }
 
   private:
     fs::path folder_;
     int count_ = 0;
+    bool made_ = false, finished_ = false;
 };
 
 std::vector<std::string> ffmpeg_arguments(const fs::path& program, const fs::path& output, const FilmFormat& format) {
@@ -67,6 +79,7 @@ std::vector<std::string> ffmpeg_arguments(const fs::path& program, const fs::pat
                                "-hide_banner",
                                "-loglevel",
                                "error",
+                               "-xerror",  // else a full disk at the end of the file is no failure
                                "-y",
                                "-f",
                                "rawvideo",
@@ -229,7 +242,8 @@ void check_film(const fs::path& path) {
 void write_film(const fs::path& path, const FilmFormat& format, const std::function<void(FilmSink& sink)>& draw) {
     if (!is_film_file(path)) {
         FrameFolder folder(path);
-        return draw(folder);
+        draw(folder);
+        return folder.finish();
     }
     write_atomically(path, [&](const fs::path& temporary) {
         const NoPipeSignal quiet;
