@@ -32,13 +32,20 @@ double misfit_of(std::span<const SweepRow> swept, std::span<const SweepRow> meas
     return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
-/// The sweep at a depth between those of `grid`, which are even from 0 to `deepest`.
+/// Depths of the sweep, 0 to `deepest`: closer where the line is thin and its width grows fastest.
+double depth_of(std::size_t k, double deepest) {
+    const double part = static_cast<double>(k) / (kDepths - 1);
+    return deepest * part * part;
+}
+
+/// The sweep at a depth between those of `grid`.
 SweepRow between(std::span<const SweepRow> grid, double deepest, double depth) {
-    const double at = std::clamp(depth / deepest, 0.0, 1.0) * (kDepths - 1);
+    const double at = std::sqrt(std::clamp(depth / deepest, 0.0, 1.0)) * (kDepths - 1);
     const auto k = std::min(static_cast<std::size_t>(at), static_cast<std::size_t>(kDepths - 2));
+    const double from = depth_of(k, deepest), to = depth_of(k + 1, deepest);
     SweepRow row{depth};
     for (double SweepRow::*column : kSweepColumns)
-        row.*column = std::lerp(grid[k].*column, grid[k + 1].*column, at - static_cast<double>(k));
+        row.*column = std::lerp(grid[k].*column, grid[k + 1].*column, (depth - from) / (to - from));
     return row;
 }
 
@@ -77,7 +84,7 @@ std::vector<BrushMatch> match_brushes(std::span<const std::string> names, std::s
         std::vector<SweepRow> grid(kDepths);
         parallel_for(grid.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k)
-                grid[k] = sweep_at(preset, kDeepestMatch * preset.length * static_cast<double>(k) / (kDepths - 1)).row;
+                grid[k] = sweep_at(preset, depth_of(k, kDeepestMatch * preset.length)).row;
         });
         out.push_back(match_of(preset, measured, grid));
     }
