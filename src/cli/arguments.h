@@ -93,7 +93,7 @@ struct Paint {
     std::string areas;                   ///< mask, brush; empty: by the drawing's colours
     std::string along;                   ///< "rim", "edge" or a stroke file: path of copies; empty: none
     std::string repeat = "fit";          ///< fit, or a number of copies along it
-    std::string edges;                   ///< cut, run-over, end-before, wrap; empty: cut
+    std::string edges;                   ///< facing, cut, run-over, end-before, wrap; empty: facing
     double edge_margin_mm = 2;           ///< of end-before
     double wide_lines_mm = 1.5;          ///< as painted; lines of a drawing in one ink are areas from this width on
     std::vector<std::string> only;       ///< layers and named groups of drawings; empty: all

@@ -184,7 +184,7 @@ void note_detail(std::vector<stroke::JournalEntry>& strokes, double texel, Conso
 
 stroke::AreaEdges edges_of(const Paint& a) {
     if (a.edges == "run-over") return stroke::AreaEdges::run_over;
-    return a.edges == "wrap" ? stroke::AreaEdges::facing : stroke::AreaEdges::cut;
+    return a.edges == "cut" || a.edges == "end-before" ? stroke::AreaEdges::cut : stroke::AreaEdges::facing;
 }
 
 void keep_clear_of_edges(std::vector<stroke::JournalEntry>& strokes, const stroke::MaskTable& masks, const Paint& a) {

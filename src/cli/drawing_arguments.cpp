@@ -23,11 +23,12 @@ void add_drawing_options(CLI::App& command, Paint& paint) {
         ->type_name("MM");
     command
         .add_option("--edges", paint.edges,
-                    "where masked areas of drawings end: cut (default), on the part in their middle, beyond its shut "
-                    "lines, not beyond openings and steps; run-over, also on walls and on what is seen behind; "
-                    "end-before, as cut, and all strokes too a margin before sharp edges and borders; wrap, round "
-                    "edges along the surface (--mapping wrap)")
-        ->check(CLI::IsMember({"cut", "run-over", "end-before", "wrap"}));
+                    "where masked areas of drawings end: facing (default), on all that faces the drawing, parts seen "
+                    "through openings too; cut, on what is connected with the middle of the drawing, beyond its shut "
+                    "lines, not beyond openings and steps; run-over, as facing, and on walls; end-before, as cut, and "
+                    "all strokes too a margin before sharp edges and borders; wrap, round edges along the surface "
+                    "(--mapping wrap)")
+        ->check(CLI::IsMember({"facing", "cut", "run-over", "end-before", "wrap"}));
     command.add_option("--edge-margin", paint.edge_margin_mm, "distance that end-before leaves")
         ->check(number_in(0.01, 1000.0))
         ->needs("--edges")

@@ -31,7 +31,7 @@ inline constexpr double kWideLine = 1.5e-3;
 /// areas in their ink: they have the ends and corners of the file, which a tuft has not. Areas of lines with one
 /// placement are one drawing. An eraser's lines and wet ones are not replaced. Removes the outlines of the others.
 /// Precondition: the lines have their place. Invalidates pointers to traces.
-void fill_wide_lines(std::vector<JournalEntry>& entries, double wide = kWideLine, AreaEdges edges = AreaEdges::cut);
+void fill_wide_lines(std::vector<JournalEntry>& entries, double wide = kWideLine, AreaEdges edges = AreaEdges::facing);
 
 /// Returns the width that the scale of a drawing refers to, metres: that of its bounds, at least a twentieth of their
 /// height.
