@@ -183,7 +183,7 @@ Task first_task(const Plan& plan) {
     return task;
 }
 
-/// The part of a name that tells files apart: without folders and extension.
+/// The part of a name that distinguishes files: without folders and extension.
 std::string short_name(const std::string& file) {
     return fs::path(file).stem().string();
 }
