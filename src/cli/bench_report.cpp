@@ -19,6 +19,7 @@
 #include "core/system/build_facts.h"
 #include "core/system/files.h"
 #include "core/text/nesting.h"
+#include "core/text/xml_text.h"
 
 namespace tuft::cli {
 namespace {

@@ -156,8 +156,8 @@ void print_matches(std::span<const brush::BrushMatch> matches) {
     for (const brush::BrushMatch& m : matches) {
         fmt::print("{:<16}", m.name);
         for (double brush::SweepRow::*column : brush::kSweepColumns) fmt::print("{:>9}", millimetres(m.rms.*column));
-        fmt::print("{:>12}", std::isfinite(m.misfit) ? fmt::format("{:.2f}", m.misfit) : "-");
-        if (std::isfinite(m.sized_misfit)) fmt::print("   {:.2f} at x {:.2f}", m.sized_misfit, m.size);
+        fmt::print("{:>12}", std::isfinite(m.fit_error) ? fmt::format("{:.2f}", m.fit_error) : "-");
+        if (std::isfinite(m.sized_fit_error)) fmt::print("   {:.2f} at x {:.2f}", m.sized_fit_error, m.size);
         fmt::print("\n");
     }
     fmt::print(
@@ -177,10 +177,10 @@ int match(const Brush& a) {
     nlohmann::json j{{"brushes", nlohmann::json::array()}};
     for (const brush::BrushMatch& m : matches)
         j["brushes"].push_back({{"name", m.name},
-                                {"fit_error", m.misfit},  // null where it is too short
+                                {"fit_error", m.fit_error},  // null where it is too short
                                 {"rms", row_json(m.rms)},
                                 {"best_size", m.size},
-                                {"fit_error_at_best_size", m.sized_misfit}});
+                                {"fit_error_at_best_size", m.sized_fit_error}});
     print_json(j);
     return 0;
 }

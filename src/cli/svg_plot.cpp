@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/text/xml_text.h"
+
 namespace tuft::cli {
 namespace {
 
@@ -105,23 +107,6 @@ std::string axes(const Plot& plot, const Axis& x, const Axis& y) {
 }
 
 }  // namespace
-
-std::string xml_text(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        if (c == '&')
-            out += "&amp;";
-        else if (c == '<')
-            out += "&lt;";
-        else if (c == '>')
-            out += "&gt;";
-        else if (c == '"')
-            out += "&quot;";
-        else
-            out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-    return out;
-}
 
 std::string svg_of(const Plot& plot) {
     std::vector<double> xs, ys;

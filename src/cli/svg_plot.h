@@ -30,7 +30,4 @@ std::string svg_of(const Plot& plot);
 std::string svg_bars(const std::string& title, const std::string& unit,
                      const std::vector<std::pair<std::string, double>>& bars);
 
-/// Returns a text for HTML and SVG.
-std::string xml_text(const std::string& text);
-
 }  // namespace tuft::cli

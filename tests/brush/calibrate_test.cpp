@@ -186,9 +186,9 @@ TEST(Match, FindsEachBrushByItsOwnWidths) {
         const std::vector<BrushMatch> found = match_brushes(names, measured);
         ASSERT_EQ(found.size(), names.size());
         EXPECT_EQ(found.front().name, name);
-        EXPECT_EQ(found.front().misfit, 0);
+        EXPECT_EQ(found.front().fit_error, 0);
         EXPECT_EQ(found.front().size, 1);
-        for (std::size_t i = 1; i < found.size(); ++i) EXPECT_GE(found[i].misfit, found[i - 1].misfit);
+        for (std::size_t i = 1; i < found.size(); ++i) EXPECT_GE(found[i].fit_error, found[i - 1].fit_error);
     }
 }
 
@@ -198,8 +198,8 @@ TEST(Match, FindsTheSizeOfABrush) {
         widths_only(sweep_depth(load_preset("goat-medium*0.6"), std::vector{1e-3, 2e-3, 4e-3, 6e-3}));
     const BrushMatch found = match_brushes(std::vector<std::string>{"goat-medium"}, measured).front();
     EXPECT_NEAR(found.size, 0.6, 0.03 * 0.6);
-    EXPECT_LT(found.sized_misfit, 0.1);
-    EXPECT_GT(found.misfit, found.sized_misfit);
+    EXPECT_LT(found.sized_fit_error, 0.1);
+    EXPECT_GT(found.fit_error, found.sized_fit_error);
 }
 
 TEST(Match, ABrushTooShortForTheTableIsLast) {
@@ -207,7 +207,7 @@ TEST(Match, ABrushTooShortForTheTableIsLast) {
     measured = widths_only(measured);
     const std::vector<BrushMatch> found = match_brushes(std::vector<std::string>{"wolf-small", "wolf-large"}, measured);
     EXPECT_EQ(found.back().name, "wolf-small");
-    EXPECT_TRUE(std::isinf(found.back().misfit));
+    EXPECT_TRUE(std::isinf(found.back().fit_error));
     EXPECT_GT(found.back().size, 1);
 }
 

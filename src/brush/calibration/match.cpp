@@ -16,7 +16,7 @@ namespace {
 constexpr int kDepths = 13;  ///< of the sweep that gives all sizes
 constexpr int kSizes = 200;  ///< between the least and the greatest
 
-double misfit_of(std::span<const SweepRow> swept, std::span<const SweepRow> measured) {
+double fit_error_of(std::span<const SweepRow> swept, std::span<const SweepRow> measured) {
     const std::vector<double> depths = depths_of(measured);
     const SweepRow spread = ruler_repeatability(30e-3);
     double sum = 0;
@@ -52,11 +52,11 @@ SweepRow between(std::span<const SweepRow> grid, double deepest, double depth) {
 BrushMatch match_of(const Preset& preset, std::span<const SweepRow> measured, std::span<const SweepRow> grid) {
     const std::vector<double> depths = depths_of(measured);
     const double deepest = kDeepestMatch * preset.length;
-    BrushMatch out{.name = preset.name, .sized_misfit = std::numeric_limits<double>::infinity()};
+    BrushMatch out{.name = preset.name, .sized_fit_error = std::numeric_limits<double>::infinity()};
     if (depths.back() <= deepest) {
         const std::vector<SweepRow> swept = sweep_depth(preset, depths);
         out.rms = rms_difference(swept, measured);
-        out.misfit = misfit_of(swept, measured);
+        out.fit_error = fit_error_of(swept, measured);
     }
     for (int i = 0; i <= kSizes; ++i) {
         const double f = kLeastSize * std::pow(kMostSize / kLeastSize, static_cast<double>(i) / kSizes);
@@ -66,10 +66,10 @@ BrushMatch match_of(const Preset& preset, std::span<const SweepRow> measured, st
             swept.push_back(between(grid, deepest, depth / f));
             for (double SweepRow::*column : kSweepColumns) swept.back().*column *= f;
         }
-        const double misfit = misfit_of(swept, measured);
-        if (misfit < out.sized_misfit) std::tie(out.sized_misfit, out.size) = std::pair(misfit, f);
+        const double fit_error = fit_error_of(swept, measured);
+        if (fit_error < out.sized_fit_error) std::tie(out.sized_fit_error, out.size) = std::pair(fit_error, f);
     }
-    if (out.misfit <= out.sized_misfit) std::tie(out.sized_misfit, out.size) = std::pair(out.misfit, 1.0);
+    if (out.fit_error <= out.sized_fit_error) std::tie(out.sized_fit_error, out.size) = std::pair(out.fit_error, 1.0);
     return out;
 }
 
@@ -89,7 +89,7 @@ std::vector<BrushMatch> match_brushes(std::span<const std::string> names, std::s
         out.push_back(match_of(preset, measured, grid));
     }
     std::stable_sort(out.begin(), out.end(), [](const BrushMatch& a, const BrushMatch& b) {
-        return std::tie(a.misfit, a.sized_misfit, a.name) < std::tie(b.misfit, b.sized_misfit, b.name);
+        return std::tie(a.fit_error, a.sized_fit_error, a.name) < std::tie(b.fit_error, b.sized_fit_error, b.name);
     });
     return out;
 }

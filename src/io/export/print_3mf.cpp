@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/system/files.h"
 #include "core/system/parallel.h"
+#include "core/text/xml_text.h"
 #include "ink/composite/match.h"
 #include "ink/spectra/colorimetry.h"
 #include "io/export/export_formats.h"
@@ -20,21 +21,6 @@ namespace {
 
 constexpr double kMm = 1000;  // millimetres per metre
 constexpr std::size_t kMostTriangles = std::size_t{1} << 24;
-
-std::string xml_text(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        if (c == '&')
-            out += "&amp;";
-        else if (c == '<')
-            out += "&lt;";
-        else if (c == '"')
-            out += "&quot;";
-        else if (static_cast<unsigned char>(c) >= ' ')
-            out += c;
-    }
-    return out;
-}
 
 // The parts of the package that every model needs.
 void add_package(ZipWriter& zip, bool png) {

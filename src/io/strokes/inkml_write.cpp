@@ -8,6 +8,7 @@
 #include "core/overloaded.h"
 #include "core/system/files.h"
 #include "core/text/units.h"
+#include "core/text/xml_text.h"
 #include "io/strokes/inkml.h"
 
 namespace tuft::io {
@@ -29,23 +30,6 @@ Kind kind_of(const RecordedStroke& trace) {
 
 constexpr const char* name_of(Kind kind) {
     return kind == Kind::flat ? "flat" : kind == Kind::tilted ? "tilted" : kind == Kind::rolled ? "rolled" : "space";
-}
-
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        if (c == '&')
-            out += "&amp;";
-        else if (c == '<')
-            out += "&lt;";
-        else if (c == '>')
-            out += "&gt;";
-        else if (c == '"')
-            out += "&quot;";
-        else
-            out += c;
-    }
-    return out;
 }
 
 /// How numbers stand in the file: units per unit of the file, and digits.
@@ -78,7 +62,7 @@ void add_number(std::string& out, double x, const Style& style, int decimals) {
 
 void add_annotation(std::string& out, const char* indent, const char* type, const std::string& text) {
     if (!text.empty())
-        out += fmt::format("{}<annotation type=\"tuft:{}\">{}</annotation>\n", indent, type, escaped(text));
+        out += fmt::format("{}<annotation type=\"tuft:{}\">{}</annotation>\n", indent, type, xml_text(text));
 }
 
 std::string vector_text(const Vec3& v, const Style& style, int decimals) {
@@ -101,11 +85,11 @@ std::string fill_attributes(const stroke::Fill& fill, const Style& style) {
                    ? fmt::format(" {}=\"{}\"", name, point_text(v, style))
                    : fmt::format(" {}=\"{} {} {}\"", name, v.x / kMillimetre, v.y / kMillimetre, v.z / kMillimetre);
     };
-    if (fill.area) return out + fmt::format(" area=\"{}\"", escaped(stroke::text_of(*fill.area)));
+    if (fill.area) return out + fmt::format(" area=\"{}\"", xml_text(stroke::text_of(*fill.area)));
     if (fill.region != stroke::Region::all) add("at", fill.at);
     if (fill.gradient == stroke::Gradient::none) return out;
     out += fmt::format(" gradient=\"{}\" to_film=\"{}\" to_ink=\"{}\"", stroke::name_of(fill.gradient), fill.to_film,
-                       escaped(fill.to_ink));
+                       xml_text(fill.to_ink));
     add("from", fill.from);
     add("to", fill.to);
     return out;
@@ -167,13 +151,13 @@ std::string preparation_text(const stroke::Preparation& preparation, const Style
                               const stroke::Extent& extent = action.extent;
                               attributes = part("depth", extent.depth) + part("amount", extent.amount) +
                                            part("side", extent.side, 0);
-                              text = escaped(action.ink);
+                              text = xml_text(action.ink);
                           },
                           [&](const stroke::Dry& dry) { text = dry.seconds > 0 ? fmt::format("{}", dry.seconds) : ""; },
                           [](const stroke::WashPalette&) {},
                           [&](const stroke::Fill& fill) {
                               attributes = fill_attributes(fill, style);
-                              text = escaped(fill.ink);
+                              text = xml_text(fill.ink);
                           }},
                preparation);
     return fmt::format("      <annotation type=\"tuft:{}\"{}>{}</annotation>\n",
@@ -222,7 +206,7 @@ std::string inkml_text(std::span<const RecordedStroke> traces, const std::string
     std::string out =
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
         "<ink xmlns=\"http://www.w3.org/2003/InkML\">\n";
-    if (!title.empty()) out += fmt::format("  <annotation type=\"title\">{}</annotation>\n", escaped(title));
+    if (!title.empty()) out += fmt::format("  <annotation type=\"title\">{}</annotation>\n", xml_text(title));
     out += "  <definitions>\n";
     for (const Kind kind : {Kind::flat, Kind::tilted, Kind::rolled, Kind::space})
         if (std::any_of(traces.begin(), traces.end(), [&](const RecordedStroke& t) { return kind_of(t) == kind; }))
