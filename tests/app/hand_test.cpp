@@ -340,7 +340,7 @@ TEST(Orbit, AMovedAndScaledModelLooksAsBefore) {
             o.target = {0.05, -0.1, 0.02};
             const Vec3 p(0.2, 0.1, 0.05);
             const Vec3 before = render::picture_point(o.camera(800, 600, former), p);
-            o.follow(former, revised);
+            o.follow(stroke::ModelMotion{.to = shift, .scale = scale}, revised);
             const Vec3 after = render::picture_point(o.camera(800, 600, revised), scale * p + shift);
             EXPECT_NEAR(before.x, after.x, 1e-4) << scale;
             EXPECT_NEAR(before.y, after.y, 1e-4) << scale;
@@ -348,14 +348,13 @@ TEST(Orbit, AMovedAndScaledModelLooksAsBefore) {
 }
 
 TEST(Orbit, AModelOfAnotherShapeKeepsTheCameraAndIsFramedWhereItLeftTheView) {
-    const Box former{Vec3(0), Vec3(0.1)};
     Orbit o;
     o.target = Vec3(0.05);
-    o.follow(former, {Vec3(0), Vec3(0.1, 0.1, 0.15)});
+    o.follow({}, {Vec3(0), Vec3(0.1, 0.1, 0.15)});
     EXPECT_EQ(o.target, Vec3(0.05));
     EXPECT_EQ(o.distance, Orbit{}.distance);
     const Box away{Vec3(1), Vec3(1.1, 1.1, 1.2)};
-    o.follow(former, away);
+    o.follow({}, away);
     EXPECT_EQ(o.target, away.centre());
 }
 

@@ -113,6 +113,7 @@ void copy_strokes(const fs::path& former, bool follow, PaintWork& work, const Pr
     const std::vector<stroke::StrokeFit> fits =
         stroke::compare_fit(strokes, followed, length_of, {before, *work.model->query, change});
     work.mismatches = stroke::find_mismatches(reports, fits);
+    work.motion = change.whole;
     work.fit = {Message("{}.", stroke::describe(stroke::total_of(fits, work.mismatches)))};
     if (change.whole) work.fit.push_back(Message("The revised model is the former one {}.", describe(*change.whole)));
     for (const stroke::PartMotion& part : change.parts)

@@ -144,7 +144,7 @@ void take_work(Session& s, PaintWork work) {
     if (s.paint_thread && !s.journal.lines.empty() && is_unnamed(s.reported.file.project))
         remember_project(s.reported.file.project);
     Message note = std::move(work.note);
-    const Box former = s.paint_thread ? s.paint_thread->model().mesh->bounds : Box{};
+    const std::optional<stroke::ModelMotion> motion = work.motion;
     close_model(s);
     if (!s.project.closing.failure.empty()) note = s.project.closing.failure;
     s.paint_thread = start_paint_thread(s.project.recovery.note, std::move(work));
@@ -159,7 +159,7 @@ void take_work(Session& s, PaintWork work) {
     if (help.by_itself && !help.seen && help.step < 0) start_guide(help);
     const Box& bounds = s.paint_thread->model().mesh->bounds;
     s.tools.symmetry.centre = bounds.centre();
-    if (s.view.keep_camera && !former.empty()) s.view.orbit.follow(former, bounds);
+    if (s.view.keep_camera) s.view.orbit.follow(motion, bounds);
     revision = std::move(next);
     show_message(s.status, source.empty() ? note : revision_note(revision));
     s.dialogs.show_mismatches = !revision.mismatches.empty();

@@ -30,16 +30,12 @@ void Orbit::frame(const Box& box) {
     distance = 0.56 * box.diagonal() / std::tan(0.5 * field_of_view);
 }
 
-void Orbit::follow(const Box& former, const Box& revised) {
-    constexpr double kSame = 0.01;  // of the diagonal: a mesh made anew, as of a CAD file, differs by its chord
-    const double scale = revised.diagonal() / former.diagonal();
-    const double misfit = glm::length(revised.size() - scale * former.size());
-    if (std::isfinite(scale) && misfit < kSame * revised.diagonal()) {
-        target = revised.centre() + scale * (target - former.centre());
-        distance *= scale;
-    } else if (glm::any(glm::lessThan(target, revised.lo)) || glm::any(glm::greaterThan(target, revised.hi))) {
-        frame(revised);
+void Orbit::follow(const std::optional<stroke::ModelMotion>& motion, const Box& box) {
+    if (motion) {
+        target = (*motion)(target);
+        distance *= motion->scale;
     }
+    if (glm::any(glm::lessThan(target, box.lo)) || glm::any(glm::greaterThan(target, box.hi))) frame(box);
 }
 
 void Orbit::look_from(StandardView view) {

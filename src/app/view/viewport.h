@@ -1,7 +1,10 @@
 #pragma once
 
+#include <optional>
+
 #include "core/geometry/types.h"
 #include "render/gl/gl_camera.h"
+#include "stroke/placement/model_motion.h"
 
 /// \file
 /// The camera's orbit. Window thread.
@@ -22,10 +25,9 @@ struct Orbit {
 
     /// Places the camera so that the whole box is visible.
     void frame(const Box& box);
-    /// Retains the picture of a model whose box has moved, or has moved and scaled: the target takes the same place in
-    /// the revised box and the distance scales. Boxes of other proportions: retains the camera; frames the revised box
-    /// where the target is outside it.
-    void follow(const Box& former, const Box& revised);
+    /// Retains the picture of a revised model: the target moves with it, and the distance scales. Frames the model
+    /// where the target is then outside `box`, that of the revised model.
+    void follow(const std::optional<stroke::ModelMotion>& motion, const Box& box);
     /// Looks along an axis, in parallel projection until the next rotation, as in Blender.
     void look_from(StandardView view);
     /// Sets the projection permanently.

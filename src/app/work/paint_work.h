@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct PaintWork {
     FileFrame frame;                                 ///< of the model file
     std::vector<stroke::StrokeMismatch> mismatches;  ///< strokes that do not fit a revised model
     std::vector<Message> fit;                        ///< how all strokes fit it, lines for the user
+    std::optional<stroke::ModelMotion> motion;       ///< of a revised model, where it moved as a whole
     std::filesystem::path spare;                     ///< where to save at the end if the project's file fails
     Message note;                                    ///< message for the user after opening
 };

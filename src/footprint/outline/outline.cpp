@@ -199,19 +199,13 @@ std::vector<Outline> outlines_of(const brush::TuftState& tuft, const Frame& fram
 }
 
 std::vector<Vec2> curve_points(const Outline& outline, int per_span) {
-    const auto& c = outline.control;
-    const int n = static_cast<int>(c.size());
+    const std::size_t n = outline.control.size();
     std::vector<Vec2> points;
     if (n < 3) return points;
-    points.reserve(static_cast<std::size_t>(n) * per_span);
-    for (int k = 0; k < n; ++k) {
-        const Vec2 &c0 = c[(k + n - 1) % n], &c1 = c[k], &c2 = c[(k + 1) % n], &c3 = c[(k + 2) % n];
-        for (int i = 0; i < per_span; ++i) {
-            const double f = double(i) / per_span, g = 1 - f;
-            points.push_back((g * g * g * c0 + (3 * f * f * f - 6 * f * f + 4) * c1 +
-                              (3 * g * g * g - 6 * g * g + 4) * c2 + f * f * f * c3) /
-                             6.0);
-        }
+    points.reserve(n * static_cast<std::size_t>(per_span));
+    for (std::size_t k = 0; k < n; ++k) {
+        const CurveSpan span(outline, k);
+        for (int i = 0; i < per_span; ++i) points.push_back(span.at(double(i) / per_span));
     }
     return points;
 }

@@ -46,6 +46,25 @@ std::vector<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<cons
 std::vector<Outline> outlines_of(const brush::TuftState& tuft, const Frame& frame,
                                  std::span<const NodePlanes> planes = {}, const OutlineOptions& options = {});
 
+/// Four control points in a row, which a span of the curve depends on.
+struct CurveSpan {
+    Vec2 c0, c1, c2, c3;
+
+    /// Span k of the closed curve, from near control point k to near k + 1. Precondition: there are control points.
+    CurveSpan(const Outline& outline, std::size_t k) {
+        const std::vector<Vec2>& c = outline.control;
+        const std::size_t n = c.size();
+        c0 = c[(k + n - 1) % n], c1 = c[k], c2 = c[(k + 1) % n], c3 = c[(k + 2) % n];
+    }
+    /// The point of the uniform cubic B-spline at the parameter f, 0–1.
+    Vec2 at(double f) const {
+        const double g = 1 - f;
+        return (g * g * g * c0 + (3 * f * f * f - 6 * f * f + 4) * c1 + (3 * g * g * g - 6 * g * g + 4) * c2 +
+                f * f * f * c3) /
+               6.0;
+    }
+};
+
 /// Returns points of the curve, `per_span` for each cut point.
 std::vector<Vec2> curve_points(const Outline& outline, int per_span = 4);
 

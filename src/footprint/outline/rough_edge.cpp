@@ -114,21 +114,15 @@ class Displacement {
 
 /// Points of the outline, no more than `steps` metres apart along `direction` and across it.
 Polygon points_of(const Outline& outline, const Vec2& direction, const Vec2& steps) {
-    const std::vector<Vec2>& c = outline.control;
-    const std::size_t n = c.size();
+    const std::size_t n = outline.control.size();
     Polygon points;
     for (std::size_t k = 0; k < n && n >= 3; ++k) {
-        const Vec2 &c0 = c[(k + n - 1) % n], &c1 = c[k], &c2 = c[(k + 1) % n], &c3 = c[(k + 2) % n];
-        const Vec2 d = c2 - c1;
+        const CurveSpan span(outline, k);
+        const Vec2 d = span.c2 - span.c1;
         const double along = std::abs(glm::dot(direction, d)) / steps.x,
                      across = std::abs(direction.x * d.y - direction.y * d.x) / steps.y;
         const int count = static_cast<int>(std::clamp(std::ceil(std::hypot(along, across)), 1.0, double(kMostPoints)));
-        for (int i = 0; i < count; ++i) {
-            const double f = double(i) / count, g = 1 - f;
-            points.push_back((g * g * g * c0 + (3 * f * f * f - 6 * f * f + 4) * c1 +
-                              (3 * g * g * g - 6 * g * g + 4) * c2 + f * f * f * c3) /
-                             6.0);
-        }
+        for (int i = 0; i < count; ++i) points.push_back(span.at(double(i) / count));
     }
     return points;
 }
