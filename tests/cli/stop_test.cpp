@@ -22,12 +22,13 @@ class Stop : public Program {
         }
     }
 
-    /// A drawing of outlines as jagged as a scanned leaf, filled or not.
+    /// A drawing of outlines as jagged as a scanned leaf, filled or drawn as a line. The line is thin enough to be
+    /// painted with the brush: a wider one is filled as an area, in seconds.
     std::string leaf(int corners, bool filled, double size = 100) const {
         std::ostringstream svg;
         svg << "<svg xmlns='http://www.w3.org/2000/svg' width='" << size
             << "mm' viewBox='-100 -100 200 200'><path fill='" << (filled ? "black" : "none") << "' stroke='"
-            << (filled ? "none" : "black") << "' d='M";
+            << (filled ? "none" : "black") << "' stroke-width='0.02' d='M";
         for (int i = 0; i < corners; ++i) {
             const double a = 6.2831853 * i / corners,
                          r = 60 + 30 * std::sin(9 * a) + 3 * std::sin(40.5 * a * a) + (i % 2);
