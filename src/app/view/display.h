@@ -36,7 +36,7 @@ class Display {
 
 /// Opens a window. Throws `Error` when there is no display or no OpenGL 3.3.
 std::unique_ptr<Display> open_window(int width, int height);
-/// Opens a framebuffer without a display: EGL without a surface, else a hidden window. Throws `Error`.
+/// Opens a framebuffer without a display: EGL on the first graphics card, else in software. Throws `Error`.
 std::unique_ptr<Display> open_offscreen(int width, int height);
 
 }  // namespace tuft::app

@@ -1,7 +1,9 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
+#include <array>
 #include <chrono>
+#include <string_view>
 #include <thread>
 
 #include "app/view/display.h"
@@ -21,12 +23,38 @@ bool Display::lost() const {
 
 namespace {
 
+bool opens(EGLDisplay display) {
+    return display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) && eglBindAPI(EGL_OPENGL_API);
+}
+
+/// The first graphics card that opens, or EGL_NO_DISPLAY. A driver of a card's maker, such as NVIDIA's, has no
+/// surfaceless platform: its cards are found by EGL_EXT_device_enumeration.
+EGLDisplay open_card() {
+    if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration")) return EGL_NO_DISPLAY;
+    std::array<EGLDeviceEXT, 16> cards{};
+    EGLint count = 0;
+    if (!eglQueryDevicesEXT(EGLint(cards.size()), cards.data(), &count)) return EGL_NO_DISPLAY;
+    for (EGLint i = 0; i < count; ++i) {
+        const char* extensions = eglQueryDeviceStringEXT(cards[i], EGL_EXTENSIONS);
+        if (extensions && std::string_view(extensions).find("EGL_MESA_device_software") != std::string_view::npos)
+            continue;
+        const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, cards[i], nullptr);
+        if (opens(display)) return display;
+    }
+    return EGL_NO_DISPLAY;
+}
+
+EGLDisplay open_without_surface() {
+    const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+    if (opens(display)) return display;
+    throw Error("no OpenGL without a display on this machine");
+}
+
 class Offscreen : public Display {
   public:
     Offscreen(int width, int height) : width_(width), height_(height) {
-        display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-        if (display_ == EGL_NO_DISPLAY || !eglInitialize(display_, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API))
-            throw Error("no OpenGL without a display on this machine");
+        display_ = open_card();
+        if (display_ == EGL_NO_DISPLAY) display_ = open_without_surface();
         make_context();
     }
     void renew() override {
