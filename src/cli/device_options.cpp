@@ -52,7 +52,7 @@ CLI::App* add_device(CLI::App& app, DeviceWork& d) {
     auto* test = device->add_subcommand("test", "check safety, stability and loop of an arm (hands off), or simulated");
     add_arm(test, d);
     add_hand(test, d);
-    test->add_option("--hands", d.hands, "try so many random hands too (10000: ten minutes)")
+    test->add_option("--hands", d.hands, "try so many random hands too (10000: ten minutes of one core)")
         ->check(number_in(0, 1000000));
     test->add_option("--hours", d.hours, "try one hand for so many simulated hours too")->check(number_in(0, 100));
     test->add_flag("--all-brushes", d.all_brushes, "all shipped brushes, not only the one of --brush");

@@ -1,16 +1,12 @@
-#include "cli/device.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "brush/preset/preset.h"
-#include "cli/steps.h"
-#include "core/random.h"
+#include "cli/device_trials.h"
 #include "core/system/allocations.h"
 #include "core/system/interrupt.h"
 #include "haptic/loop.h"
@@ -20,120 +16,6 @@ namespace tuft::cli {
 namespace {
 
 using namespace std::chrono_literals;
-using haptic::TrialOptions;
-using haptic::TrialReport;
-
-/// Where hands try.
-struct Places {
-    std::vector<ContactModel> models;
-    std::vector<const mesh::SurfaceQuery*> surface;
-    std::vector<haptic::TrialPlace> place;
-
-    enum class Where { above, edge, groove };
-    void add(ContactModel model, const std::string& name, Where where) {
-        surface.push_back(model.surface.get());
-        place.push_back(where == Where::above ? haptic::place_above(*surface.back(), name)
-                                              : haptic::place_at_edge(*surface.back(), name, where == Where::groove));
-        models.push_back(std::move(model));
-    }
-};
-
-Places places_of(const DeviceWork& a) {
-    Places places;
-    if (!a.model.empty()) {
-        places.add(load_contact_model(a.model), "model", Places::Where::above);
-        places.add(load_contact_model(a.model), "edge", Places::Where::edge);
-        return places;
-    }
-    places.add(load_contact_model("sheet"), "sheet", Places::Where::above);
-    places.add(load_contact_model("bowl"), "bowl", Places::Where::above);
-    places.add(load_contact_model("bowl"), "rim", Places::Where::edge);
-    places.add(load_contact_model("car"), "roof", Places::Where::above);
-    places.add(load_contact_model("car"), "car's edge", Places::Where::edge);
-    places.add(load_contact_model("car"), "shut line", Places::Where::groove);
-    places.add(load_contact_model("plate"), "plate's edge", Places::Where::edge);
-    return places;
-}
-
-TrialOptions trial_options(const DeviceWork& a, const brush::Preset& preset) {
-    TrialOptions options;
-    options.law = {.limits = haptic::device_preset(a.simulate),
-                   .gain = preset.force_gain,
-                   .delay = 1e-3 * a.delay_ms,
-                   .restore = a.restore};
-    options.delay = 1e-3 * a.delay_ms;
-    options.jitter = a.delay_ms > 0 ? 5e-4 : 0;
-    return options;
-}
-
-/// All motions at all places with each brush.
-TrialReport try_motions(const DeviceWork& a, const Places& places, Console& console) {
-    const std::vector<std::string> brushes = a.all_brushes ? brush::list_presets() : std::vector{a.brush};
-    const ProgressFn progress = console.progress();
-    TrialReport worst;
-    std::size_t done = 0;
-    for (const std::string& name : brushes) {
-        const brush::Tuft tuft = brush::make_tuft(brush::load_preset(name));
-        for (std::size_t p = 0; p < places.place.size(); ++p, ++done) {
-            report(progress, "motions",
-                   static_cast<double>(done) / static_cast<double>(brushes.size() * places.place.size()));
-            for (int motion = 0; motion <= static_cast<int>(haptic::HandMotion::slide); ++motion) {
-                check_interrupt();
-                const auto path =
-                    haptic::hand_path(static_cast<haptic::HandMotion>(motion), places.place[p], tuft.preset);
-                merge(worst, run_trial(tuft, *places.surface[p], path, trial_options(a, tuft.preset)));
-            }
-        }
-    }
-    return worst;
-}
-
-/// Hands of any weight and grip, one second each with a motion of its own.
-TrialReport try_hands(const DeviceWork& a, const Places& places, Console& console) {
-    const brush::Tuft tuft = brush::make_tuft(brush::load_preset(a.brush));
-    const ProgressFn progress = console.progress();
-    TrialReport worst;
-    for (int hand = 0; hand < a.hands; ++hand) {
-        if (hand % 16 == 0) report(progress, "hands", static_cast<double>(hand) / a.hands);
-        Random random(static_cast<std::uint64_t>(hand) + 1);
-        TrialOptions options = trial_options(a, tuft.preset);
-        options.seconds = 2;
-        options.hand = {.mass = 0.02 * std::pow(25.0, random.uniform()),  // a finger … an arm
-                        .damping = random.uniform(1, 12),
-                        .stiffness = 50 * std::pow(20.0, random.uniform())};
-        const std::size_t p = random.bits() % places.place.size();
-        const auto motion =
-            static_cast<haptic::HandMotion>(random.bits() % (static_cast<int>(haptic::HandMotion::slide) + 1));
-        merge(worst, run_trial(tuft, *places.surface[p],
-                               haptic::hand_path(motion, places.place[p], tuft.preset, random.bits() | 1), options));
-        worst.seconds.clear();
-    }
-    return worst;
-}
-
-TrialReport try_hours(const DeviceWork& a, const Places& places, Console& console) {
-    const brush::Tuft tuft = brush::make_tuft(brush::load_preset(a.brush));
-    const ProgressFn progress = console.progress();
-    constexpr double kPart = 60;  // s of one motion
-    const int parts = static_cast<int>(std::ceil(a.hours * 3600 / kPart));
-    TrialReport worst;
-    for (int part = 0; part < parts; ++part) {
-        report(progress, "hours", static_cast<double>(part) / parts);
-        TrialOptions options = trial_options(a, tuft.preset);
-        options.seconds = kPart;
-        const std::size_t p = static_cast<std::size_t>(part) % places.place.size();
-        const haptic::HandMotion motion =
-            haptic::kPaintingMotions[static_cast<std::size_t>(part) / places.place.size() %
-                                     std::size(haptic::kPaintingMotions)];
-        merge(worst,
-              run_trial(tuft, *places.surface[p],
-                        haptic::hand_path(motion, places.place[p], tuft.preset, static_cast<std::uint64_t>(part) + 1),
-                        options));
-        worst.seconds.clear();
-    }
-    return worst;
-}
-
 int slowest_stop(const DeviceWork& a, const Places& places) {
     const brush::Tuft tuft = brush::make_tuft(brush::load_preset(a.brush));
     const auto path = haptic::hand_path(haptic::HandMotion::rest, places.place[0], tuft.preset);
@@ -193,15 +75,17 @@ int test_device(const DeviceWork& a) {
     nlohmann::json out;
     if (!a.simulate.empty()) {
         haptic::device_preset(a.simulate);
-        TrialReport worst = try_motions(a, places, console);
-        const std::vector<float> solves = worst.seconds;
-        merge(worst, try_hands(a, places, console));
-        merge(worst, try_hours(a, places, console));
+        const Trials trials = run_trials(a, places, console);
+        const haptic::TrialReport& worst = trials.worst;
+        const std::vector<float>& solves = worst.seconds;
         out = {{"least_energy_uj", 1e6 * worst.least_energy},
+               {"least_energy_at", trials.least_energy_at},
                {"least_energy_with_arm_uj", 1e6 * worst.least_with_arm},
                {"largest_step_n", worst.largest_step},
+               {"largest_step_at", trials.largest_step_at},
                {"largest_step_hard_n", worst.largest_step_hard},
                {"largest_force_n", worst.largest_force},
+               {"trials", trials.count},
                {"simulated_s", static_cast<double>(worst.periods) * haptic::kPeriod},
                {"contacts", worst.contacts},
                {"unconverged_percent", percent(worst.unconverged, worst.solves)},
