@@ -264,8 +264,9 @@ TEST(WetFilm, ABlotIsTheSameHoweverTexelsLie) {
             }
             return sum / 16;
         });
-        EXPECT_LT(e.worst, 0.01);
-        EXPECT_LT(e.rms, 1.5e-3);
+        // At the front half a texel of 0.1 mm, upwind of half of one of 0.05, 0.03 texels apart.
+        EXPECT_LT(e.worst, kAtFront);
+        EXPECT_LT(e.rms, 2.5e-3);
     }
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <mutex>
-#include <numbers>
 
 #include "core/random.h"
 #include "core/system/parallel.h"
@@ -24,11 +23,7 @@ namespace {
 
 using namespace wet;
 
-constexpr int kLines = 20;              // of memory asked for at once: as many as the processor waits for
-constexpr double kLeastMixing = 2e-10;  // m²/s
-constexpr double kStirring = 0.02;      // film units: mixing over mobility
-constexpr double kMostUneven = 1.2;
-constexpr double kFilmHeight = 10e-6;  // metres: relief over which flow is as uneven as half of that
+constexpr int kLines = 20;  // of memory asked for at once: as many as the processor waits for
 constexpr float kFilmsPerMicrometre = 0.1f;
 // Seconds of a step by tension.
 constexpr double kLevelEvery = 0.05, kLevelStep = 0.1, kLongestLevelStep = 1.6, kShortestLevelStep = 0.0125;
@@ -36,7 +31,6 @@ constexpr double kPartOfWait = 0.025, kLeastOfLongWait = 1.5;
 // Steps are doubled where Σ curvature² keeps the one part, or no texel changes by so much of its thickness; halved
 // where it keeps but the other. What decays by 1 / (1 + z) in place of e^−z has a rate that is off by z / 2.
 constexpr double kSlow = 0.9, kFast = 0.8, kLittle = 2e-3, kMuch = 5e-3, kVeryMuch = 0.1;
-constexpr double kRimLength = 1e-3;  // metres: what the rim of a wet spot adds to its area, as for drying
 
 /// What lies on a tile and on those around it.
 using Near = std::array<const Sources*, 9>;
@@ -70,43 +64,6 @@ bool all_zero(const Plane& plane) {
 }
 
 }  // namespace
-
-double washburn(double pore_radius, double contact_angle, double tension, double viscosity) {
-    return pore_radius * tension * std::cos(contact_angle) / (2 * viscosity);
-}
-
-namespace {
-
-/// Without a radius of its pores, `diffusion` is that of full pores.
-double suction_of(const Substrate& substrate, const FilmParams& p) {
-    if (substrate.pore_radius > 0)
-        return washburn(static_cast<double>(substrate.pore_radius),
-                        static_cast<double>(substrate.contact_angle) * std::numbers::pi / 180, p.tension, p.viscosity);
-    return kFrontConstant * kFrontConstant * p.mobility * p.pores;
-}
-
-}  // namespace
-
-FilmParams film_params(const Substrate& substrate, const Vec3& down) {
-    FilmParams p;
-    p.mobility = static_cast<double>(substrate.diffusion);
-    // Wet in wet, surface tension stirs more than molecules move: as wide as water itself spreads.
-    p.mixing = std::max(kLeastMixing, kStirring * p.mobility);
-    p.threshold = static_cast<double>(substrate.threshold);
-    p.pin = 2 * static_cast<double>(substrate.edge);
-    p.absorbency = static_cast<double>(substrate.absorbency);
-    p.pores = static_cast<double>(substrate.pores);
-    p.suction = suction_of(substrate, p);
-    p.retention = static_cast<double>(substrate.retention);
-    p.evaporation = static_cast<double>(substrate.evaporation);
-    p.rim_evaporation = p.evaporation * static_cast<double>(substrate.edge) * kRimLength;
-    p.stain = p.pores / (p.pores + 2);
-    if (substrate.pores > 0)
-        p.unevenness =
-            kMostUneven * static_cast<double>(substrate.relief) / (static_cast<double>(substrate.relief) + kFilmHeight);
-    if (glm::length(down) > 0) p.down = glm::normalize(down);
-    return p;
-}
 
 struct WetFilm::State : TileList {
     std::vector<std::uint8_t> reported;
