@@ -7,6 +7,7 @@
 #include "core/hash.h"
 #include "core/random.h"
 #include "ink/film/film_tile.h"
+#include "ink/film/seepage.h"
 #include "ink/film/tension.h"
 
 namespace {
@@ -57,6 +58,35 @@ void level(const Field& w, const Geometry& g, Work& work, Add&& add) {
     const Carried over = flow_over_link(links[0], {1.5f, 2}, {tile->grid.p[40], tile->grid.p[80]}, {0.5f, 0.4f});
     add(std::array{over.flow + 0.0f, over.a, over.b + 0.0f,
                    static_cast<float>(found.strong + 2 * found.faint + 4 * found.rims)});
+}
+
+/// Seepage in one tile, and over a seam to itself.
+template <class Add>
+void seep(const Field& s, const Geometry& g, Work& work, Add&& add) {
+    auto tile = std::make_unique<SeepTile>();
+    tile->open.fill(1);
+    Plane start, rate;
+    for (int t = 0; t < kTexels; ++t) start[t] = s[static_cast<std::size_t>(field_of(t))], rate[t] = 0.4f;
+    tile->start = start.data();
+    tile->film = rate.data();
+    tile->links = {{0, 17, 200, 0.7f, 0.3f}, {0, 200, 17, 0.7f, 0.3f}};
+    for (int j = 1; j <= 3; ++j) {
+        const auto n = static_cast<float>(j);
+        const SeepStage stage{0.1f, 0.05f, 1 / 3.0f, (2 * n + 1) / (n + 2), (n - 1) / (n + 2), (j + 1) % 2};
+        for (SeepLink& l : tile->links) seep_over_link(l, start[l.texel], start[l.other_texel], stage);
+        seep_stage(*tile, s, g, stage);
+        add(tile->s[static_cast<std::size_t>(1 - stage.from)]);
+    }
+    limit_carried(*tile, g, 1, rate);
+    add(tile->carried);
+    Field carried{};
+    for (int t = 0; t < kTexels; ++t) carried[static_cast<std::size_t>(field_of(t))] = tile->carried[t];
+    seepage_flow(work, *tile, g, 1, carried);
+    for (float& v : work.ds) v += 0.0f;  // no zero's sign counts
+    add(work.ds);
+    std::array<float, kTexels> pigment;
+    pigment_step(pigment.data(), work, g, false, 7);
+    add(pigment);
 }
 
 /// Conductances as of a stretched, sheared chart with a hole in it.
@@ -125,7 +155,6 @@ int main() {
                         .pin = 1,
                         .mixing = 0.02f,
                         .grip = 0.5f,
-                        .soak = 0.01f,
                         .pores = round & 4 ? 3.0f : 0.0f,
                         .passing = round & 8 ? 0.2f : 1.0f,
                         .evaporation = 0.004f,
@@ -144,8 +173,6 @@ int main() {
             Beside beside{.blocks = {0xffff, 0xffff, 0xffff, 0xffff}, .here = g.blocks};
             beside.liquid = {w_at[3], w_at[5], w_at[1], w_at[7]};
             film_block_flow(work, g, beside, step);
-            beside.liquid = {s_at[3], s_at[5], s_at[1], s_at[7]};
-            pore_block_flow(work, g, beside, step);
         }
         std::array<SeamLanes, 2> seams;
         for (std::size_t lane = 0; lane < 2 * kSide; ++lane) {
@@ -159,12 +186,12 @@ int main() {
         }
         seam_fluxes(seams, step);
         for (const SeamLanes& l : seams) {
-            for (SeamLanes::Lane lane : {l.through_w, l.through_s, l.a, l.b}) {
+            for (SeamLanes::Lane lane : {l.through, l.a, l.b}) {
                 for (float& v : lane) v += 0.0f;  // no zero's sign counts
                 add(lane);
             }
             for (std::size_t x = 0; x < kSide; ++x) {
-                work.dw[x] -= l.through_w[x];
+                work.dw[x] -= l.through[x];
                 work.dp[x] -= l.a[x] * p[0][4 * x] + l.b[x] * p[1][4 * x];
             }
         }
@@ -180,6 +207,7 @@ int main() {
                               greatest(pigment.data())};
         add(rest);
         level(work.w, g, work, add);
+        if (round & 4) seep(work.s, g, work, add);
     }
     std::printf("%016llx\n", static_cast<unsigned long long>(hash));
 }

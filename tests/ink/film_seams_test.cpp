@@ -86,14 +86,19 @@ BlotError error_of_seam(const Lie& left, const Lie& right, double shortest_step 
     return error_of_seam(left, right, [&](const auto& charts) { return blot_on(charts, shortest_step); });
 }
 
+// A cut cell has the mean of what lies in it, and its middle is up to 0.14 texels beside its texel's. At the front in
+// the pores ink rises by up to a quarter of its peak in a texel: 3.5 % of the peak. Away from the front it is a tenth
+// of that.
+constexpr double kAtFront = 0.03, kAtMostAtFront = 0.035;
+
 TEST(WetFilm, ABlotIsTheSameWithASeamUnderIt) {
     // The right half straight on or turned by a quarter, at several fractions of a texel.
     const double quarter = std::numbers::pi / 2, degree = quarter / 90;
     const Lie left{{8.21, 8.13}, 0};
     const auto expect_same = [](const Lie& a, const Lie& b) {
         const BlotError e = error_of_seam(a, b);
-        EXPECT_LT(e.worst, 0.01) << a.angle << ' ' << b.angle;
-        EXPECT_LT(e.rms, 2.5e-4);
+        EXPECT_LT(e.worst, kAtFront) << a.angle << ' ' << b.angle;
+        EXPECT_LT(e.rms, 3.5e-4);
     };
     for (const Lie& right :
          {Lie{{200.87, 8.21}, 0}, {{460.6, 8.37}, quarter}, {{460, 8.87}, quarter}, {{460.45, 8.62}, quarter}})
@@ -118,7 +123,7 @@ TEST(WetFilm, ABlotIsTheSameWithASeamUnderIt) {
     expect_same({{140.952, 9.138}, 26.400 * degree}, {{421.249, 11.107}, 11.248 * degree});
     expect_same({{140.714, 8.709}, 41.600 * degree}, {{421.356, 10.550}, 10.187 * degree});
     expect_same({{140.694, 8.752}, 11.713 * degree}, {{421.068, 10.233}, 14.883 * degree});
-    // So much as a step allows flows over links: with less these are more than 1 % off.
+    // So much as a step allows flows over links: with less these are more off.
     expect_same({{140.545, 8.910}, 9.757 * degree}, {{421.508, 10.431}, 12.992 * degree});
     expect_same({{140.380, 9.088}, 23.310 * degree}, {{421.410, 10.304}, 6.269 * degree});
     expect_same({{140.650, 9.004}, 34.978 * degree}, {{421.405, 10.796}, 3.874 * degree});
@@ -130,19 +135,25 @@ struct Stroke {
     FilmReport report;
     double water = 0, ink = 0;  ///< before
 
-    explicit Stroke(double shortest_step, int charts = 1, double seconds = 8) : wet(testing::sheet(0.01, charts, 200)) {
+    /// `call`: seconds that no step exceeds.
+    explicit Stroke(double shortest_step, int charts = 1, double seconds = 8, double call = 8)
+        : wet(testing::sheet(0.01, charts, 200)) {
         FilmParams p = film_params(load_substrate("rice-paper"));
         p.shortest_step = shortest_step;
+        p.tension = 0;
         const auto stroke = [](const Vec3& at) { return disc({at.x, 0.5 * at.y, 0}, 1.5e-3, 0.1e-3); };
         wet.wet([&](const Vec3& at) { return 3.5 * stroke(at); });
         wet.ink(0, [&](const Vec3& at) { return 2 * stroke(at); });
         water = wet.canvas.total_liquid(wet.map), ink = wet.canvas.total(wet.map, 0);
-        report = wet.film.advance(wet.canvas, seconds, p);
+        for (double t = 0; t < seconds - 1e-9; t += call) {
+            const FilmReport part = wet.film.advance(wet.canvas, std::min(call, seconds - t), p);
+            report.steps += part.steps, report.evaporated += part.evaporated;
+        }
     }
 };
 
 TEST(WetFilm, StepsFarBeyondWhatStabilityAllowsLeaveInkWhereShortOnesDo) {
-    const Stroke exact(0.002), fast(FilmParams{}.shortest_step);
+    const Stroke exact(0, 1, 8, 0.004), fast(FilmParams{}.shortest_step);
     EXPECT_GT(exact.report.steps, 10 * fast.report.steps);
     double sum2 = 0, peak = 0;
     std::size_t n = 0;
@@ -151,8 +162,9 @@ TEST(WetFilm, StepsFarBeyondWhatStabilityAllowsLeaveInkWhereShortOnesDo) {
         peak = std::max(peak, a);
         if (a > 0) sum2 += d * d, ++n;
     });
-    // In the first second fronts run by more than a texel a step; held back evenly, in steps of 10 ms, it were 0.05.
-    EXPECT_LT(std::sqrt(sum2 / static_cast<double>(n)) / peak, 0.035);
+    // In the first second fronts run by more than a texel a step, and what carries pigment is upstream of the whole
+    // step.
+    EXPECT_LT(std::sqrt(sum2 / static_cast<double>(n)) / peak, 0.015);
 }
 
 TEST(WetFilm, LongStepsKeepEveryPigmentAndAllWaterAndAreTheSameOnAnyNumberOfThreads) {
@@ -175,16 +187,13 @@ TEST(WetFilm, WhereFlowsAreHeldBackASeamDoesNotHoldThemBackMore) {
     for (const auto& [left, right] :
          {std::pair{Lie{{8.21, 8.13}, 0}, Lie{{200.87, 8.21}, 0}}, {{{140.3, 8.4}, 0}, {{420.7, 10.2}, 30 * degree}}}) {
         const BlotError e = error_of_seam(left, right, 0.1);
-        EXPECT_LT(e.worst, 0.01);
+        EXPECT_LT(e.worst, kAtFront);
         EXPECT_LT(e.rms, 0.0015) << "of steps in two parts, where they meet";
     }
 }
 
 TEST(WetFilm, ABlotIsTheSameOverRandomSeams) {
-    // At the steps in use, where flows are hardly held back, and twice as long. A cut cell has the
-    // mean of what lies in it, and its middle is up to 0.14 texels beside its texel's: at the rim,
-    // where ink thins out by 7 % of the peak in a texel, that is a third of a percent to the whole
-    // one that differs in a few layouts of a hundred.
+    // At the steps in use, where flows are hardly held back, and twice as long.
     const double degree = std::numbers::pi / 180;
     for (const double shortest : {FilmParams{}.shortest_step, 2 * FilmParams{}.shortest_step}) {
         int n = 0, within = 0;
@@ -194,9 +203,9 @@ TEST(WetFilm, ABlotIsTheSameOverRandomSeams) {
                 const Lie left{{140.3 + at(0), 8.4 + at(1)}, 45 * at(2) * degree},
                     right{{420.7 + at(3), 10.2 + at(4)}, 45 * at(5) * degree};
                 const BlotError e = error_of_seam(left, right, shortest);
-                EXPECT_LT(e.worst, 0.012) << seed << ' ' << i;
+                EXPECT_LT(e.worst, kAtMostAtFront) << seed << ' ' << i;
                 EXPECT_LT(e.rms, 0.0015) << seed << ' ' << i;
-                within += e.worst < 0.01;
+                within += e.worst < kAtFront;
             }
         EXPECT_GE(within, n - 1) << "of " << n;
     }
@@ -255,8 +264,9 @@ TEST(WetFilm, ABlotIsTheSameHoweverTexelsLie) {
             }
             return sum / 16;
         });
-        EXPECT_LT(e.worst, 0.01);
-        EXPECT_LT(e.rms, 1.5e-3);
+        // At the front half a texel of 0.1 mm, upwind of half of one of 0.05, 0.03 texels apart.
+        EXPECT_LT(e.worst, kAtFront);
+        EXPECT_LT(e.rms, 2.5e-3);
     }
 }
 

@@ -127,21 +127,50 @@ TEST(WetFilm, AMoundOfWaterSinksAsBarenblattsSolution) {
     EXPECT_NEAR(s.canvas.total_liquid(s.map) / before, 1, 1e-6);
 }
 
+/// Barenblatt's solution of ∂u/∂τ = ∇²u³ in the plane, τ in mm²: √⟨C − r² / (18 τ^⅓)⟩ / τ^⅓.
+double barenblatt(const Vec3& at, double tau) {
+    const double root = std::cbrt(tau);
+    return std::sqrt(std::max(0.0, 0.4 - glm::dot(at, at) / 1e-6 / (18 * root))) / root;
+}
+/// Pores through which liquid flows so that τ = 0.1 passes in a second. u is saturation.
+FilmParams seeping() {
+    FilmParams p = still();
+    p.pores = 100;
+    p.suction = 3 * 0.1e-6 * 1.0903204 * 1.0903204;  // u³ / 3
+    return p;
+}
+
+TEST(WetFilm, LiquidInPoresSpreadsAsBarenblattsSolution) {
+    for (const int charts : {1, 2}) {
+        Wet s(testing::sheet(0.012, charts, 120 / charts));
+        const FilmParams p = seeping();
+        const double from = 1, to = 8;
+        s.wet([&](const Vec3& at) { return p.pores * barenblatt(at, from); }, Liquid::pores);
+        const double before = s.canvas.total_liquid(s.map);
+        s.film.advance(s.canvas, (to - from) / 0.1, p);
+        double sum = 0, square = 0, worst = 0;
+        s.each([&](std::uint32_t slot, int t, const Vec3& at) {
+            const double e = std::abs(s.water(slot, t, Liquid::pores) / p.pores - barenblatt(at, to));
+            sum += barenblatt(at, to), square += e;
+            if (barenblatt(at, to) > 0.5 * barenblatt(Vec3{0}, to)) worst = std::max(worst, e);
+        });
+        // At the front the slope is vertical: a texel there, of 0.1 mm and 40 on the way round, is half full.
+        EXPECT_LT(square / sum, 0.02) << charts;
+        EXPECT_LT(worst / barenblatt(Vec3{0}, to), 0.02) << charts;
+        EXPECT_NEAR(s.canvas.total_liquid(s.map) / before, 1, 1e-6) << charts;
+    }
+}
+
 // What seeps runs as Barenblatt's solution runs, outwards at x R'/R. Grains that go (1 − retention) as fast keep
 // their places in a disc that grows with R^(1 − retention).
 TEST(WetFilm, FibresHoldGrainsBackFromWhatSeeps) {
     for (const double retention : {0.0, 0.5, 1.0}) {
-        Wet s(testing::sheet(0.02, 1, 100));
-        FilmParams p = still();
-        p.mobility = 1e-9;
-        p.pores = 100;
+        Wet s(testing::sheet(0.012, 1, 120));
+        FilmParams p = seeping();
         p.retention = retention;
-        const auto mound = [](const Vec3& at, double tau) {
-            return std::max(0.0, 3 - glm::dot(at, at) / 1e-6 / (16 * std::sqrt(tau))) / std::sqrt(tau);
-        };
-        const double from = 0.1, to = 1.6, growth = std::pow(to / from, 0.25);  // R ∝ τ^¼: 2, with τ = D t / 2 in mm²
-        s.wet([&](const Vec3& at) { return mound(at, from); }, Liquid::pores);
-        s.ink(0, [&](const Vec3& at) { return mound(at, from); });
+        const double from = 1, to = 10, growth = std::pow(to / from, 1.0 / 6);
+        s.wet([&](const Vec3& at) { return p.pores * barenblatt(at, from); }, Liquid::pores);
+        s.ink(0, [&](const Vec3& at) { return barenblatt(at, from); });
         const auto radius = [&] {
             double sum = 0, square = 0;
             s.each([&](std::uint32_t slot, int t, const Vec3& at) {
@@ -151,8 +180,8 @@ TEST(WetFilm, FibresHoldGrainsBackFromWhatSeeps) {
             return std::sqrt(square / sum);
         };
         const double before = s.canvas.total(s.map, 0), start = radius();
-        s.film.advance(s.canvas, 2 * (to - from) * 1e-6 / p.mobility, p);
-        // Upwind, first order: r² grows by a texel of 0.2 mm times the path, some 2 mm, more: 3 % of 3.5 mm squared.
+        s.film.advance(s.canvas, (to - from) / 0.1, p);
+        // Upwind, first order: r² grows by a texel of 0.1 mm times the path, 1.2 mm, more: 3 % of 2 mm squared.
         EXPECT_NEAR(radius() / start, std::pow(growth, 1 - retention), 0.03) << retention;
         EXPECT_NEAR(s.canvas.total(s.map, 0) / before, 1, 1e-5) << retention;
     }
@@ -313,11 +342,11 @@ TEST(WetFilm, HalvingTheStepHalvesTheError) {
     // Texels get wet and dry at times that fall to either side of a step: convergence in the mean.
     const std::vector<double> all = halvings(p, 4);
     EXPECT_LT(all[3], all[0] / 2);
-    EXPECT_LT(all[0], 1e-4) << "film units: twice what it is without drying";
+    EXPECT_LT(all[0], 4e-4) << "film units, of 3: at fronts, whose slope is vertical";
     p.pin = 1e6;
     p.evaporation = p.rim_evaporation = 0;
     const std::vector<double> smooth = halvings(p, 2);
-    EXPECT_NEAR(smooth[0] / smooth[1], 2, 0.1) << "first order in time";
+    EXPECT_NEAR(smooth[0] / smooth[1], 1.9, 0.2) << "first order in time, but for a part at the fronts";
 }
 
 TEST(WetFilm, ThreadsDoNotChangeABit) {

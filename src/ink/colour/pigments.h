@@ -97,6 +97,10 @@ struct Substrate {
     float relief_length = 60e-6f;   ///< correlation length of the grain, metres
     float absorbency = 0.2f;        ///< rate of absorption of the water on it, 1/s
     float pores = 2;                ///< capacity of its pores, film units of water
+    /// r, metres: radius of tubes that draw as its pores do, by their rate of rise (Washburn 1921); less than their
+    /// width, since ways through pores wind and end. 0: `diffusion` holds in the pores too.
+    float pore_radius = 0;
+    float contact_angle = 0;        ///< θ of water on its pores, degrees, below 90
     float retention = 0;            ///< 0–1: fraction of the pigments that its pores retain from seeping liquid
     float diffusion = 1e-8f;        ///< D of the wet film, m²/s per film unit of water
     float threshold = 0.1f;         ///< w_c: film units of water that do not flow

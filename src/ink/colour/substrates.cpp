@@ -12,8 +12,8 @@ Substrate parse_substrate(std::string_view text, const std::string& source) {
     const toml::table table = preset::parse_table(text, source);
     const preset::Reader in(table, source);
     in.only({"name", "title", "reflectance", "roughness", "metallic", "capacity", "interface", "relief_um",
-             "relief_length_um", "absorbency", "pores", "retention", "diffusion", "threshold", "edge", "evaporation",
-             "source"});
+             "relief_length_um", "absorbency", "pores", "pore_radius_nm", "contact_angle_deg", "retention", "diffusion",
+             "threshold", "edge", "evaporation", "source"});
     Substrate s;
     const auto read = [&](float& field, std::string_view key, double lo, double hi, double unit = 1) {
         const double value = in.number(key, lo, hi, static_cast<double>(field) / unit);
@@ -30,6 +30,8 @@ Substrate parse_substrate(std::string_view text, const std::string& source) {
     read(s.relief_length, "relief_length_um", 1, 10000, 1e-6);
     read(s.absorbency, "absorbency", 0, 100);
     read(s.pores, "pores", 0, 1000);
+    read(s.pore_radius, "pore_radius_nm", 0, 1e6, 1e-9);
+    read(s.contact_angle, "contact_angle_deg", 0, 89);
     read(s.retention, "retention", 0, 1);
     read(s.diffusion, "diffusion", 0, 1e-4);
     read(s.threshold, "threshold", 0, 10);
@@ -45,9 +47,10 @@ std::string substrate_toml(const Substrate& s) {
            "\nrelief_um = " + shortest_in(s.relief, 1e-6) +
            "\nrelief_length_um = " + shortest_in(s.relief_length, 1e-6) +
            "\nabsorbency = " + shortest_float(s.absorbency) + "\npores = " + shortest_float(s.pores) +
-           "\nretention = " + shortest_float(s.retention) + "\ndiffusion = " + shortest_float(s.diffusion) +
-           "\nthreshold = " + shortest_float(s.threshold) + "\nedge = " + shortest_float(s.edge) +
-           "\nevaporation = " + shortest_float(s.evaporation) + "\n";
+           "\npore_radius_nm = " + shortest_in(s.pore_radius, 1e-9) +
+           "\ncontact_angle_deg = " + shortest_float(s.contact_angle) + "\nretention = " + shortest_float(s.retention) +
+           "\ndiffusion = " + shortest_float(s.diffusion) + "\nthreshold = " + shortest_float(s.threshold) +
+           "\nedge = " + shortest_float(s.edge) + "\nevaporation = " + shortest_float(s.evaporation) + "\n";
 }
 
 Substrate load_substrate(std::string_view name) {

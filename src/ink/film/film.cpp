@@ -13,6 +13,7 @@
 #include "ink/film/film_step.h"
 #include "ink/film/film_worker.h"
 #include "ink/film/paste.h"
+#include "ink/film/seepage.h"
 #include "ink/film/tension.h"
 #include "ink/texels/drying.h"
 #include "ink/texels/pool.h"
@@ -22,11 +23,7 @@ namespace {
 
 using namespace wet;
 
-constexpr int kLines = 20;              // of memory asked for at once: as many as the processor waits for
-constexpr double kLeastMixing = 2e-10;  // m²/s
-constexpr double kStirring = 0.02;      // film units: mixing over mobility
-constexpr double kMostUneven = 1.2;
-constexpr double kFilmHeight = 10e-6;  // metres: relief over which flow is as uneven as half of that
+constexpr int kLines = 20;  // of memory asked for at once: as many as the processor waits for
 constexpr float kFilmsPerMicrometre = 0.1f;
 // Seconds of a step by tension.
 constexpr double kLevelEvery = 0.05, kLevelStep = 0.1, kLongestLevelStep = 1.6, kShortestLevelStep = 0.0125;
@@ -34,7 +31,6 @@ constexpr double kPartOfWait = 0.025, kLeastOfLongWait = 1.5;
 // Steps are doubled where Σ curvature² keeps the one part, or no texel changes by so much of its thickness; halved
 // where it keeps but the other. What decays by 1 / (1 + z) in place of e^−z has a rate that is off by z / 2.
 constexpr double kSlow = 0.9, kFast = 0.8, kLittle = 2e-3, kMuch = 5e-3, kVeryMuch = 0.1;
-constexpr double kRimLength = 1e-3;  // metres: what the rim of a wet spot adds to its area, as for drying
 
 /// What lies on a tile and on those around it.
 using Near = std::array<const Sources*, 9>;
@@ -55,31 +51,19 @@ bool load(Field& field, const Near& near, PlaneOf&& plane_of) {
     return any;
 }
 
+/// `step` without what it does of its own: for flow that is computed elsewhere.
+Step still(Step step) {
+    for (float* rate :
+         {&step.flow, &step.levelling, &step.mixing, &step.relief, &step.evaporation, &step.rim, &step.most})
+        *rate = 0;
+    return step;
+}
+
 bool all_zero(const Plane& plane) {
     return std::all_of(plane.begin(), plane.end(), [](float v) { return v == 0.0f; });
 }
 
 }  // namespace
-
-FilmParams film_params(const Substrate& substrate, const Vec3& down) {
-    FilmParams p;
-    p.mobility = static_cast<double>(substrate.diffusion);
-    // Wet in wet, surface tension stirs more than molecules move: as wide as water itself spreads.
-    p.mixing = std::max(kLeastMixing, kStirring * p.mobility);
-    p.threshold = static_cast<double>(substrate.threshold);
-    p.pin = 2 * static_cast<double>(substrate.edge);
-    p.absorbency = static_cast<double>(substrate.absorbency);
-    p.pores = static_cast<double>(substrate.pores);
-    p.retention = static_cast<double>(substrate.retention);
-    p.evaporation = static_cast<double>(substrate.evaporation);
-    p.rim_evaporation = p.evaporation * static_cast<double>(substrate.edge) * kRimLength;
-    p.stain = p.pores / (p.pores + 2);
-    if (substrate.pores > 0)
-        p.unevenness =
-            kMostUneven * static_cast<double>(substrate.relief) / (static_cast<double>(substrate.relief) + kFilmHeight);
-    if (glm::length(down) > 0) p.down = glm::normalize(down);
-    return p;
-}
 
 struct WetFilm::State : TileList {
     std::vector<std::uint8_t> reported;
@@ -93,7 +77,9 @@ struct WetFilm::State : TileList {
     Part part = Part::whole;                ///< of the step in work
     std::vector<std::uint32_t> part_order;  ///< of `order` what a step in parts, or by tension, goes through
     Tension tension;
+    Seepage seepage;
     bool levels = false;             ///< the step in work is one by tension
+    bool seeps = false;              ///< the step in work is one through the pores
     double level_step = kLevelStep;  ///< seconds
     double least_level_step = kLevelStep;
     std::mutex mutex;
@@ -194,15 +180,15 @@ struct WetFilm::State : TileList {
     }
 
     /// On relief the liquid's own surface levels, and not its depth.
-    Beside beside(const Active& tile, const Near& near, Liquid kind) const {
-        const auto blocks = [kind](const Active& a, const Sources& s) {
-            return kind == Liquid::film && s.relief ? std::uint16_t{0} : a.geometry->blocks;
+    Beside beside(const Active& tile, const Near& near) const {
+        const auto blocks = [](const Active& a, const Sources& s) {
+            return s.relief ? std::uint16_t{0} : a.geometry->blocks;
         };
         Beside out{.here = blocks(tile, *near[4])};
         constexpr std::array kSides{3, 5, 1, 7};
         for (std::size_t i = 0; i < 4; ++i) {
             const Sources& from = *near[kSides[i]];
-            const Plane* plane = from.liquid[static_cast<std::size_t>(kind)];
+            const Plane* plane = from.liquid[static_cast<std::size_t>(Liquid::film)];
             if (!plane) continue;
             out.liquid[i] = plane->data();
             out.blocks[i] = blocks(list[tile.around[kSides[i]]], from);
@@ -224,13 +210,14 @@ struct WetFilm::State : TileList {
         work.on_relief = any_relief && load(work.z, near, [](const Sources& a) { return a.relief; });
         Ahead& ahead = worker.ahead;
         ahead.fetch(kLines);
-        if (levels) {
+        if (seeps) {
+            seepage.flow(static_cast<std::uint32_t>(index), *this, sources, pigments, work, worker.crossing);
+        } else if (levels) {
             tension_flow(work, g, tension.tile(index)->grid, step.grip);
             tension.cross_seams(static_cast<std::uint32_t>(index), sources, pigments, step.grip, work, worker.crossing);
         } else {
             const bool thin = fluxes(work, g, step);
-            if (step.most > 0 && any_w) film_block_flow(work, g, beside(tile, near, Liquid::film), step);
-            if (step.most > 0 && any_s) pore_block_flow(work, g, beside(tile, near, Liquid::pores), step);
+            if (step.most > 0 && any_w) film_block_flow(work, g, beside(tile, near), step);
             if (step.searches) {
                 const float held = tension.held_on(tile.slot);
                 tile.ripples =
@@ -247,7 +234,8 @@ struct WetFilm::State : TileList {
         const bool seam_was = tile.seam_wet;
         tile.outcome = {};
         tile.pigments = 0;
-        tile.idle = !any_w && !any_s && worker.crossing.size == 0;
+        // Through the pores liquid goes several texels in a step.
+        tile.idle = !seeps && !any_w && !any_s && worker.crossing.size == 0;
         if (tile.idle) return;
         give(tile.w, worker.spare[0]);
         give(tile.s, worker.spare[1]);
@@ -382,13 +370,14 @@ struct WetFilm::State : TileList {
     /// they are.
     std::span<const std::uint32_t> going() {
         const auto set = [&](std::uint32_t i, std::uint32_t n) { readers[i].store(n, std::memory_order_relaxed); };
-        if (part != Part::inside && !levels) {
+        if (part != Part::inside && !levels && !seeps) {
             for (std::uint32_t i = 0; i < list.size(); ++i) set(i, n_readers[i]);
             return order;
         }
         part_order.clear();
         for (const std::uint32_t i : order)
-            if (levels ? tension.tile(i) != nullptr : beside_seam(list[i].slot)) part_order.push_back(i);
+            if (seeps ? seepage.tile(i) != nullptr : levels ? tension.tile(i) != nullptr : beside_seam(list[i].slot))
+                part_order.push_back(i);
         for (std::uint32_t i = 0; i < list.size(); ++i) {
             set(i, 0);
             list[i].idle = true;
@@ -450,10 +439,7 @@ struct WetFilm::State : TileList {
             level_step = std::min(2 * level_step, kLongestLevelStep);
             return;
         }
-        Step rates = last;
-        for (float* rate : {&rates.flow, &rates.levelling, &rates.mixing, &rates.relief, &rates.soak,
-                            &rates.evaporation, &rates.rim, &rates.most})
-            *rate = 0;
+        const Step rates = still(last);
         part = Part::whole;
         std::uint64_t n = 0;
         for (double left = seconds; left > 0;) {
@@ -470,6 +456,25 @@ struct WetFilm::State : TileList {
                 level_step = std::max(0.5 * level_step, solved.change > kVeryMuch
                                                             ? kShortestLevelStep * least_level_step / kLevelStep
                                                             : least_level_step);
+        }
+    }
+
+    /// Liquid soaks into the pores and goes through them for `seconds`.
+    void seep(Canvas& canvas, const FilmParams& params, double seconds, const Step& last, FilmReport& report,
+              const BeforeFn& before) {
+        const Step rates = still(last);
+        part = Part::whole;
+        std::uint64_t n = 0;
+        for (double left = seconds; left > 0 && !list.empty();) {
+            if (sources.empty()) prepare(canvas);
+            if (!seepage.find(*this, sources)) return;
+            for (const Active& tile : list) report_slot(tile.slot, before);
+            const double dt = seepage.solve(*this, sources, left);
+            seeps = true;
+            step(canvas, params, rates, report.steps | ++n << 56, report);
+            seeps = false;
+            if (changed()) spread(), sources.clear();
+            left = dt < left * (1 - 1e-9) ? left - dt : 0;
         }
     }
 
@@ -505,6 +510,7 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     s.reported.assign(s.map.n_slots(), 0);
     s.forget_relief();
     s.tension.start(params, s.map);
+    s.seepage.start(params);
     s.set_unevenness(params.unevenness);
     s.begin(canvas);
     double beads = 0;  // seconds that they have not run yet
@@ -527,6 +533,7 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
                            (rippled > 0.9 * std::max(s.level_step, kLevelEvery) || left == 0);
         if (level) chosen.step.searches = true;
         s.step_in_parts(canvas, params, chosen, report, before);
+        if (params.pores > 0) s.seep(canvas, params, dt, chosen.step, report, before);
         if (level && !s.list.empty()) s.level(canvas, params, rippled, chosen.step, report);
         if (level) rippled = 0;
         beads += dt;

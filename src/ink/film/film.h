@@ -22,6 +22,7 @@ struct FilmParams {
     double grip = 1;                ///< film units: in thinner liquid, pigment lies on the surface and lags behind
     double absorbency = 0;          ///< a, 1/s: absorption by empty pores
     double pores = 0;               ///< film units, capacity of the pores; 0: none
+    double suction = 0;             ///< k, m²/s: a front fed from full pores is at √(k t); 0: nothing seeps
     double retention = 0;           ///< fraction of the pigments that pores retain from seeping liquid
     double evaporation = 1.0 / 60;  ///< film units per second
     double rim_evaporation = 0;     ///< film units · m per second, additional, per metre of rim
@@ -46,8 +47,13 @@ struct FilmParams {
     double shortest_step = 0.05;
 };
 
-/// Returns the parameters of a substrate (diffusion, threshold, edge, absorbency, pores, evaporation, relief) and
-/// the direction of gravity.
+/// Returns k = r σ cos θ / (2 η), m²/s: the square of the length of a front in pores of radius r (m) over time, with
+/// contact angle θ (radians), σ (N/m) and η (Pa s) (Lucas 1918, Washburn 1921).
+double washburn(double pore_radius, double contact_angle, double tension, double viscosity);
+
+/// Returns the parameters of a substrate (diffusion, threshold, edge, absorbency, pores, pore radius, contact angle,
+/// evaporation, relief) and the direction of gravity. Where no pore radius is given, full pores have the diffusion of
+/// the film: k = ξ² D pores.
 FilmParams film_params(const Substrate& substrate, const Vec3& down = Vec3{0});
 
 /// Work of `WetFilm::advance`.
@@ -61,8 +67,11 @@ struct FilmReport {
 /// w on the surface and s in the pores (w + s = T), pigments p of the open film:
 ///
 ///     ∂w/∂t = ∇·((D ⟨w − w_c⟩ + L ⟨w − w_r⟩) ∇w) − soak − e
-///     ∂s/∂t = ∇·(D s ∇s) + soak,                           soak = a w (1 − s / pores)
+///     ∂s/∂t = ∇·(D₀ S² ∇s) + soak,                         soak = a w (1 − S),  S = s / pores,  D₀ = k / ξ²
 ///     ∂p/∂t = ∇·((p/H)↑ j + D_p M ∇(p/H)),                 j: flux of w and of s (1 − retention)
+///
+/// Pores. Lucas–Washburn: a front fed from full pores is at √(k t), k = r σ cos θ / (2 η) (`washburn`). In steps of
+/// their own, stable for any length (seepage.h).
 ///
 /// Symbols. M = w + s (1 − retention): fibres retain pigment from seeping liquid, so water runs ahead of the ink
 /// and a line has a dark core. ↑: upwind, of the texel the liquid comes from. H = max(T, grip): pigment under thin
@@ -96,10 +105,9 @@ struct FilmReport {
 ///
 /// Steps. Explicit, as many as stability needs for any `seconds`: amounts are never negative, and pores never
 /// exceed their capacity. None is shorter than `shortest_step`. There no face passes more than an eighth of a
-/// texel. Where the pores are wet throughout, the excess flows between blocks of 4 × 4 texels, for which the same
-/// step is 16 times smaller relative to stability (writing on rice paper with texels of 0.05 mm: steps of 25 and 50
-/// ms, where stability needs 2, change amounts by 0.2 % of the maximum, rms). Blocks end at seams: among the tiles
-/// there the step is divided as stability needs, half of it before and half after the other flows (Strang 1968).
+/// texel. Where the surface is wet throughout, the excess flows between blocks of 4 × 4 texels, for which the same
+/// step is 16 times smaller relative to stability. Blocks end at seams: among the tiles there the step is divided as
+/// stability needs, half of it before and half after the other flows (Strang 1968).
 ///
 /// Cost: 10 to 16 ns per texel and step with four pigments, depending on the fraction sheared and beside seams; two
 /// thirds are sums in the first-level cache. A step of levelling costs 80 to 130 ns per texel of tiles with ripples.

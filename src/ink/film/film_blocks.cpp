@@ -156,21 +156,19 @@ Fluxes fluxes_of(Means m, const Geometry& g, const Medium& p) {
 }
 
 /// Sixteen faces from texel k to k + `to`.
-inline __attribute__((always_inline)) void transport(Faces& f, int k, int to, const float* flux, const float* rate,
-                                                     float passing) {
+inline __attribute__((always_inline)) void transport(Faces& f, int k, int to, const float* flux, const float* rate) {
     float *a = &f.a[k], *b = &f.b[k];
     const float *from = rate + k, *onto = from + to;
 #pragma GCC ivdep
     for (int x = 0; x < kSide; ++x) {
-        const float part = flux[x] * passing;
-        a[x] += (part > 0 ? part : 0) * from[x];
-        b[x] += (part < 0 ? part : 0) * onto[x];
+        a[x] += (flux[x] > 0 ? flux[x] : 0) * from[x];
+        b[x] += (flux[x] < 0 ? flux[x] : 0) * onto[x];
     }
 }
 
 /// Between the faces of a block what flows changes evenly, so that all its texels gain or lose as
 /// much.
-TUFT_CLONES void spread(Work& work, float* d, const Fluxes& f, float passing) {
+TUFT_CLONES void spread(Work& work, const Fluxes& f) {
     alignas(64) std::array<float, kSide + 1> across;
     alignas(64) std::array<float, kSide> last{}, along;
     for (int row = -1; row < kSide; ++row) {
@@ -179,7 +177,7 @@ TUFT_CLONES void spread(Work& work, float* d, const Fluxes& f, float passing) {
         const float* second = f.along[part == 0 ? face : face + 1].data();
         for (int x = 0; x < kSide; ++x)
             along[x] = first[x] + (second[x] - first[x]) * (static_cast<float>(part) / kBlock);
-        transport(work.y, field_at(0, row), kRow, along.data(), work.rate.data(), passing);
+        transport(work.y, field_at(0, row), kRow, along.data(), work.rate.data());
         if (row >= 0) {
             for (int b = 0; b < kBlocks; ++b) {
                 const float from = f.across[b][row], change = f.across[b + 1][row] - from;
@@ -187,11 +185,11 @@ TUFT_CLONES void spread(Work& work, float* d, const Fluxes& f, float passing) {
                     across[b * kBlock + x] = from + change * (static_cast<float>(x) / kBlock);
             }
             across[kSide] = f.across[kBlocks][row];
-            transport(work.x, field_at(-1, row), 1, across.data(), work.rate.data(), passing);
+            transport(work.x, field_at(-1, row), 1, across.data(), work.rate.data());
             const int k = field_at(kSide - 1, row);
-            work.x.a[k] += std::max(across[kSide] * passing, 0.0f) * work.rate[k];
-            work.x.b[k] += std::min(across[kSide] * passing, 0.0f) * work.rate[k + 1];
-            float* into = d + row * kSide;
+            work.x.a[k] += std::max(across[kSide], 0.0f) * work.rate[k];
+            work.x.b[k] += std::min(across[kSide], 0.0f) * work.rate[k + 1];
+            float* into = work.dw.data() + row * kSide;
 #pragma GCC ivdep
             for (int x = 0; x < kSide; ++x) into[x] += (across[x] - across[x + 1]) + (last[x] - along[x]);
         }
@@ -204,12 +202,7 @@ TUFT_CLONES void spread(Work& work, float* d, const Fluxes& f, float passing) {
 void film_block_flow(Work& work, const Geometry& g, const Beside& beside, const Step& p) {
     const Fluxes fluxes =
         fluxes_of(means_of(work.w, beside), g, {p.flow, p.threshold, p.levelling, p.retained, p.most});
-    if (fluxes.any) spread(work, work.dw.data(), fluxes, 1);
-}
-
-void pore_block_flow(Work& work, const Geometry& g, const Beside& beside, const Step& p) {
-    const Fluxes fluxes = fluxes_of(means_of(work.s, beside), g, {p.flow, 0, 0, 0, p.most});
-    if (fluxes.any) spread(work, work.ds.data(), fluxes, p.passing);
+    if (fluxes.any) spread(work, fluxes);
 }
 
 }  // namespace tuft::ink::wet

@@ -56,10 +56,8 @@ TUFT_INLINE End end_of(float w, float s, float grain, float z, const Step& p) {
 }
 
 /// What differs between tiles; all give the same numbers where they apply.
-template <bool kPores, bool kDry, bool kRelief, bool kLimited>
+template <bool kDry, bool kRelief, bool kLimited>
 struct Law {
-    static constexpr bool pores = kPores;
-
     /// Conductance g times how much flows.
     static TUFT_INLINE float limited_flow(float g, float flow, float most, const Step& p) {
         if constexpr (kLimited) return smaller(g * flow, most);
@@ -93,10 +91,6 @@ struct Law {
         if constexpr (kLimited) down = larger(smaller(down, most * over), -(most * over));
         return e0.z + e1.z > 0 ? down : plain;
     }
-
-    static TUFT_INLINE float pore_flux(float g, const End& e0, const End& e1, float most, const Step& p) {
-        return limited_flow(g, (0.5f * p.flow) * (e0.s + e1.s), most, p) * (e0.s - e1.s);
-    }
 };
 
 struct Carriers {
@@ -121,37 +115,28 @@ struct Falling {
     static TUFT_INLINE float unpack(std::int16_t g) { return positive(-(static_cast<float>(g) * kDiagonalUnit)); }
 };
 
-/// Flow through a face: on the surface and, where the law has pores, in them; and the pigment that it carries by unit
-/// of each end's concentration.
+/// Flow through a face, and the pigment that it carries by unit of each end's concentration.
 struct FaceFlow {
-    float film, pores, a, b;
+    float film, a, b;
 };
 
 template <class Law, class Kind>
 TUFT_INLINE FaceFlow face_flow(float g, const End& e0, const End& e1, const Step& p) {
     const float most = Law::most_of(e0, e1, Kind::share, p);
-    FaceFlow out{Law::film_flux(g, e0, e1, most, p), 0, 0, 0};
-    float flux = out.film;
-    if constexpr (Law::pores) {
-        out.pores = Law::pore_flux(g, e0, e1, most, p);
-        flux = out.film + p.passing * out.pores;
-    }
-    const Carriers c = carriers(g, flux, e0, e1, p);
-    out.a = c.a * e0.rate;
-    out.b = c.b * e1.rate;
-    return out;
+    const float film = Law::film_flux(g, e0, e1, most, p);
+    const Carriers c = carriers(g, film, e0, e1, p);
+    return {film, c.a * e0.rate, c.b * e1.rate};
 }
 
 /// Sixteen faces between two rows of texels, from texel k on; their flows go into o.through.
 template <class Law, class Kind, class Packed>
 TUFT_INLINE void faces(Work& o, Faces& f, int k, const Packed* g, const std::array<Ends, 2>& rows, const Step& p) {
-    float *w = &o.through[0][k], *s = &o.through[1][k], *a = &f.a[k], *b = &f.b[k];
+    float *w = &o.through[k], *a = &f.a[k], *b = &f.b[k];
     const Ends from = rows[0], to = rows[1];
 #pragma GCC ivdep
     for (int x = 0; x < kLanes; ++x) {
         const FaceFlow flow = face_flow<Law, Kind>(Kind::unpack(g[x]), from.at(x), to.at(x), p);
         w[x] = flow.film;
-        if constexpr (Law::pores) s[x] = flow.pores;
         a[x] = flow.a;
         b[x] = flow.b;
     }
@@ -159,24 +144,20 @@ TUFT_INLINE void faces(Work& o, Faces& f, int k, const Packed* g, const std::arr
 
 /// Faces at the upper sides of a row, and the sum of the flows into its texels through their four sides.
 template <class Law, bool kFirst>
-TUFT_INLINE void row_of_faces(Work& o, int row, const Geometry& g, float* below_w, float* below_s, const Step& p) {
+TUFT_INLINE void row_of_faces(Work& o, int row, const Geometry& g, float* below, const Step& p) {
     const int k = field_at(0, row);
     const Ends from = ends(o, g, k), to = ends(o, g, k + kRow);
     const std::uint16_t* conductance = &g.gy[(row + 1) * kSide];
-    const float *x_w = &o.through[0][k], *x_s = &o.through[1][k];
+    const float* x_w = &o.through[k];
     float *a = &o.y.a[k], *b = &o.y.b[k];
-    float *dw = o.dw.data() + row * kSide, *ds = o.ds.data() + row * kSide;
+    float* dw = o.dw.data() + row * kSide;
 #pragma GCC ivdep
     for (int x = 0; x < kLanes; ++x) {
         const FaceFlow flow = face_flow<Law, Straight>(Straight::unpack(conductance[x]), from.at(x), to.at(x), p);
         a[x] = flow.a;
         b[x] = flow.b;
-        if constexpr (!kFirst) dw[x] = (x_w[x - 1] - x_w[x]) + (below_w[x] - flow.film);
-        below_w[x] = flow.film;
-        if constexpr (Law::pores) {
-            if constexpr (!kFirst) ds[x] = (x_s[x - 1] - x_s[x]) + (below_s[x] - flow.pores);
-            below_s[x] = flow.pores;
-        }
+        if constexpr (!kFirst) dw[x] = (x_w[x - 1] - x_w[x]) + (below[x] - flow.film);
+        below[x] = flow.film;
     }
 }
 
@@ -188,13 +169,10 @@ TUFT_INLINE void diagonals(Work& o, Faces& f, const Geometry& g, int first, int 
                          {ends(o, g, k + first), ends(o, g, k + second)}, p);
     for (int row = 0; row < kSide; ++row) {
         const int k = field_at(0, row);
-        const float *w = &o.through[0][k], *s = &o.through[1][k];
-        float *dw = o.dw.data() + row * kSide, *ds = o.ds.data() + row * kSide;
+        const float* w = &o.through[k];
+        float* dw = o.dw.data() + row * kSide;
 #pragma GCC ivdep
         for (int x = 0; x < kLanes; ++x) dw[x] += w[x - second] - w[x - first];
-        if constexpr (!Law::pores) continue;
-#pragma GCC ivdep
-        for (int x = 0; x < kLanes; ++x) ds[x] += s[x - second] - s[x - first];
     }
 }
 
@@ -205,25 +183,19 @@ TUFT_INLINE void all_faces(Work& o, const Geometry& g, const Step& step) {
     for (int k = 0; k < kSide * kRow; k += kLanes)
         faces<Law, Straight>(o, o.x, kRow + k, &g.gx[static_cast<std::size_t>(k)],
                              {ends(o, g, kRow + k), ends(o, g, kRow + k + 1)}, p);
-    alignas(64) float below_w[kLanes], below_s[kLanes] = {};
-    row_of_faces<Law, true>(o, -1, g, below_w, below_s, p);
-    for (int row = 0; row < kSide; ++row) row_of_faces<Law, false>(o, row, g, below_w, below_s, p);
+    alignas(64) float below[kLanes];
+    row_of_faces<Law, true>(o, -1, g, below, p);
+    for (int row = 0; row < kSide; ++row) row_of_faces<Law, false>(o, row, g, below, p);
     if (g.ups) diagonals<Law, Rising>(o, o.up, g, 0, kRow + 1, p);
     if (g.downs) diagonals<Law, Falling>(o, o.down, g, 1, kRow, p);
 }
 template <bool kDry, bool kRelief>
 TUFT_INLINE void faces_of(Work& o, const Geometry& g, const Step& p) {
-    if (p.pores > 0)
-        all_faces<Law<true, kDry, kRelief, false>>(o, g, p);
-    else
-        all_faces<Law<false, kDry, kRelief, false>>(o, g, p);
+    all_faces<Law<kDry, kRelief, false>>(o, g, p);
 }
 template <bool kDry, bool kRelief>
 TUFT_INLINE void limited_faces_of(Work& o, const Geometry& g, const Step& p) {
-    if (p.pores > 0)
-        all_faces<Law<true, kDry, kRelief, true>>(o, g, p);
-    else
-        all_faces<Law<false, kDry, kRelief, true>>(o, g, p);
+    all_faces<Law<kDry, kRelief, true>>(o, g, p);
 }
 TUFT_CLONES void faces_wet(Work& o, const Geometry& g, const Step& p) {
     faces_of<false, false>(o, g, p);
@@ -317,11 +289,11 @@ struct Settled {
     float most_w = 0, most_s = 0, least = 0;  ///< the last: of both together
     double air = 0;                           ///< what went into the air, film units · mean area
 };
-/// Texels' new liquid, soaking and drying. Beside charts there is no air; 0 / 0 there, thrown away or not, is no
+/// Texels' new liquid, drying. Beside charts there is no air; 0 / 0 there, thrown away or not, is no
 /// number, which this file's options forbid (AVX2 then lost other lanes).
 TUFT_CLONES Settled settle(float* __restrict w, float* __restrict s, const Work& o, const float* __restrict inverse,
                            const float* __restrict noise, const Step& step) {
-    const float soak = step.soak, pores = step.pores, per_pores = pores > 0 ? 1 / pores : 0;
+    const float pores = step.pores;
     const float evaporation = step.evaporation, rim = step.rim;
     alignas(64) float most_w[kLanes] = {}, most_s[kLanes] = {}, air[kLanes] = {}, least[kLanes];
     for (float& l : least) l = std::numeric_limits<float>::max();
@@ -331,13 +303,6 @@ TUFT_CLONES Settled settle(float* __restrict w, float* __restrict s, const Work&
             const int i = row * kSide + x, k = field_at(x, row);
             float w1 = sum_of(o.w[k], o.dw[i] * inverse[i], noise[i]),
                   s1 = sum_of(o.s[k], o.ds[i] * inverse[i], noise[i]);
-            const float free = positive(pores - s1);
-            float in = w1 * soak * (free * per_pores);
-            // In units of the last place of the larger one, so that both sums are exact.
-            const float large = larger(w1, s1);
-            in = smaller(smaller((large + in) - large, free), w1);
-            w1 -= in;
-            s1 += in;
             const float over = positive(s1 - pores);  // by rounding
             s1 -= over;
             w1 += over;
@@ -431,40 +396,30 @@ TUFT_CLONES void transport_over_seams(float* out, const Work& o, const Geometry&
     transport_all<true>(out, o, g, noise);
 }
 
-template <bool kPores, bool kLimited>
+template <bool kLimited>
 TUFT_INLINE void seam_faces(SeamLanes& l, const Step& step) {
-    using Here = Law<kPores, true, true, kLimited>;
+    using Here = Law<true, true, kLimited>;
     const Step p = step;
 #pragma GCC ivdep
     for (int x = 0; x < kLanes; ++x) {
         const End e0 = end_of(l.w[0][x], l.s[0][x], l.grain[0][x], l.z[0][x], p),
                   e1 = end_of(l.w[1][x], l.s[1][x], l.grain[1][x], l.z[1][x], p);
         const float g = l.weight[x], most = p.most_of_link * l.flow_area[x], w = Here::film_flux(g, e0, e1, most, p);
-        float s = 0;
-        if constexpr (kPores) s = Here::pore_flux(g, e0, e1, most, p);
-        const float flux = w + p.passing * s;
-        const Carriers c = carriers(g, flux, e0, e1, p);
+        const Carriers c = carriers(g, w, e0, e1, p);
         // Nearer cells' middles lie farther apart than their texels, by whose distance their amounts differ: they mix
         // more, by no more than what could flow.
         const float near = smaller(larger(1 / larger(l.apart[x] * l.apart[x], kLeast), 1), kMostNear) - 1;
-        const float more = 0.5f * smaller(near * std::abs(flux), p.limit * g * smaller(e0.t, e1.t));
-        l.through_w[x] = w;
-        l.through_s[x] = s;
+        const float more = 0.5f * smaller(near * std::abs(w), p.limit * g * smaller(e0.t, e1.t));
+        l.through[x] = w;
         l.a[x] = (c.a + more) * e0.rate;
         l.b[x] = (c.b - more) * e1.rate;
     }
 }
 TUFT_CLONES void sixteen_seams(SeamLanes& l, const Step& p) {
-    if (p.pores > 0)
-        seam_faces<true, false>(l, p);
-    else
-        seam_faces<false, false>(l, p);
+    seam_faces<false>(l, p);
 }
 TUFT_CLONES void sixteen_limited_seams(SeamLanes& l, const Step& p) {
-    if (p.pores > 0)
-        seam_faces<true, true>(l, p);
-    else
-        seam_faces<false, true>(l, p);
+    seam_faces<true>(l, p);
 }
 
 TUFT_CLONES void gather_rows(float* __restrict to, const std::array<const float*, 9>& planes) {
@@ -495,7 +450,7 @@ bool fluxes(Work& work, const Geometry& g, const Step& step) {
         (work.on_relief ? limited_faces_on_relief : rims.dry ? limited_faces_dry : limited_faces_wet)(work, g, step);
     else
         (work.on_relief ? faces_on_relief : rims.dry ? faces_dry : faces_wet)(work, g, step);
-    if (!(step.pores > 0)) work.ds.fill(0);
+    work.ds.fill(0);
     if (rims.thin)
         slope_to_rims(work.rim_slope.data(), work.total.data(), g, step.rim_depth);
     else if (work.sloping)

@@ -89,8 +89,7 @@ void cross_seams(const SeamTile& at_seam, int pigments, const Step& step, bool t
     wet::seam_fluxes(std::span(crossing.lanes).first((crossing.size + kSide - 1) / kSide), step);
     for (std::size_t i = 0; i < crossing.size; ++i) {
         const SeamLanes& l = crossing.lanes[i / kSide];
-        work.dw[crossing.texels[i]] -= l.through_w[i % kSide];
-        work.ds[crossing.texels[i]] -= l.through_s[i % kSide];
+        work.dw[crossing.texels[i]] -= l.through[i % kSide];
     }
     if (step.rim > 0 && thin) slopes_over_seams(at_seam, step, work);
 }

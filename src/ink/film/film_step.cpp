@@ -24,20 +24,17 @@ constexpr int kMostParts = 64;
 /// What flows fastest: least seconds in which a tile's part as small as 1 / stiffness of that could
 /// flow off.
 struct Deepest {
-    double stiffness = 4, w = 0, s = 0;
+    double stiffness = 4, w = 0;
 
     void take(const Active& tile) {
         const auto own = static_cast<double>(tile.stiffness);
         stiffness = std::max({stiffness, own, tile.links.empty() ? 0 : std::max(4.0, own) + kSeamStiffness});
         w = std::max(w, static_cast<double>(tile.outcome.most_w));
-        s = std::max(s, static_cast<double>(tile.outcome.most_s));
     }
     double rate(const FilmParams& p, double levelling, double area, bool on_relief) const {
         const double over_ridges = on_relief ? p.levelling * std::max(0.0, w - p.ridge) : 0;
         return stiffness / area *
-               std::max(
-                   p.mobility * (w - p.threshold) + std::max(levelling * std::max(0.0, w - p.retained), over_ridges),
-                   p.pores > 0 ? p.mobility * s : 0.0);
+               (p.mobility * (w - p.threshold) + std::max(levelling * std::max(0.0, w - p.retained), over_ridges));
     }
 };
 
@@ -46,7 +43,7 @@ Step part_of(const Step& step, int parts, double stiffness) {
     Step out = step;
     for (float* rate : {&out.flow, &out.levelling, &out.mixing, &out.relief}) *rate *= part;
     out.limit = static_cast<float>(kFlowPart / stiffness);
-    out.most = out.soak = out.evaporation = out.rim = 0;
+    out.most = out.evaporation = out.rim = 0;
     return out;
 }
 
@@ -82,7 +79,6 @@ Chosen choose_step(const FilmParams& p, const TileList& tiles, double texel_size
     step.pin = static_cast<float>(p.pin);
     step.mixing = static_cast<float>(std::min(p.mixing * dt / area, kMixingPart / stiffness));
     step.grip = static_cast<float>(p.grip);
-    step.soak = static_cast<float>(-std::expm1(-p.absorbency * dt));
     step.pores = static_cast<float>(p.pores);
     step.passing = static_cast<float>(1 - p.retention);
     step.evaporation = static_cast<float>(p.evaporation * dt);
@@ -92,7 +88,7 @@ Chosen choose_step(const FilmParams& p, const TileList& tiles, double texel_size
     step.relief = static_cast<float>(p.levelling * dt / area);
     step.ridge = static_cast<float>(p.ridge);
     out.dt = dt;
-    if (!limited || !(beside.w + beside.s > 0)) return out;
+    if (!limited || !(beside.w > 0)) return out;
     const double longest = std::max(beside.rate(p, levelling, area, on_relief) / kFlowPart, mixing / kMixingPart);
     out.parts = std::clamp(static_cast<int>(std::ceil(dt * longest)), 2, kMostParts) / 2 * 2;
     out.part = part_of(step, out.parts, beside.stiffness);

@@ -104,9 +104,8 @@ struct Step {
     float threshold = 0, pin = 0;
     float mixing = 0;  ///< D_p dt / A
     float grip = 0;
-    float soak = 0;  ///< part drawn in by empty pores: 1 − exp(−a dt)
     float pores = 0;
-    float passing = 1;      ///< part of the pigments that what seeps through the pores takes along
+    float passing = 1;      ///< part of the liquid in the pores in which pigments mix
     float evaporation = 0;  ///< film units
     float rim = 0;          ///< film units more, per film unit of slope
     float rim_depth = 0;
@@ -141,7 +140,7 @@ struct alignas(64) Work {
     Field carrying{};                                    ///< liquid in which pigments move, M
     Field p{};                                           ///< one pigment
     Faces x, y, up, down;                                ///< up: of diagonals k to k + 19, down: k + 1 to k + 18
-    std::array<Field, 2> through{};                      ///< scratch: what goes through faces of one kind
+    Field through{};                                     ///< scratch: what goes through faces of one kind
     alignas(64) std::array<float, kTexels> dw, ds{};     ///< film units · mean area that come through faces and seams
     alignas(64) std::array<float, kTexels> rim_slope{};  ///< of liquid no higher than `rim_depth`, a texel
     bool sloping = false;                                ///< `rim_slope` is not 0
@@ -154,18 +153,16 @@ void gather_field(Field& field, const std::array<const float*, 9>& planes);
 /// on some texel.
 bool fluxes(Work& work, const Geometry& g, const Step& step);
 
-/// A kind of liquid on the tiles to the left, to the right, below and above [256], null: none; and in which of this and
+/// Liquid on the tiles to the left, to the right, below and above [256], null: none; and in which of this and
 /// their blocks it may flow from block to block.
 struct Beside {
     std::array<const float*, 4> liquid{};
     std::array<std::uint16_t, 4> blocks{};
     std::uint16_t here = 0;
 };
-/// Where `most` holds flows back inside wide wet places: the rest of what flows on the surface, or through the pores,
-/// between blocks of 4 × 4 texels, which is stable for steps 16 times as long. Adds to dw or ds and to what carries
-/// pigments.
+/// Where `most` holds flows back inside wide wet places: the rest of what flows on the surface, between blocks of 4 × 4
+/// texels, which is stable for steps 16 times as long. Adds to dw and to what carries pigments.
 void film_block_flow(Work& work, const Geometry& g, const Beside& beside, const Step& step);
-void pore_block_flow(Work& work, const Geometry& g, const Beside& beside, const Step& step);
 
 /// What a texel's liquid became.
 struct Outcome {
@@ -186,7 +183,7 @@ struct LocalFilms {
     std::array<std::uint8_t, kTexels>& closing;  ///< [256] 1 where a wet texel became dry
 };
 
-/// Adds dw and ds to the films of `work`, then soaks and evaporates. `seed` is that of the dither.
+/// Adds dw and ds to the films of `work`, then evaporates. `seed` is that of the dither.
 Outcome local_step(const LocalFilms& films, const Work& work, const Geometry& g, const Step& step, std::uint64_t seed);
 /// The largest of [256], at least 0.
 float greatest(const float* plane);
@@ -201,8 +198,8 @@ struct alignas(64) SeamLanes {
     Lane apart{};      ///< their distance, texels. What comes from upstream smears as over a whole texel
     Lane flow_area{};  ///< as `Geometry`'s, for one of a texel's links
     std::array<Lane, 2> w{}, s{}, grain{}, z{};  ///< liquid, pin of the place, relief
-    Lane through_w, through_s;
-    Lane a, b;  ///< pigment: a p1 + b p2
+    Lane through;                                ///< of what is on the surface
+    Lane a, b;                                   ///< pigment: a p1 + b p2
 };
 void seam_fluxes(std::span<SeamLanes> lanes, const Step& step);
 

@@ -154,7 +154,7 @@ TUFT_INLINE float most_of(const Work& o, const Geometry& g, int k, int l) {
 /// Sixteen faces from texels k to k + `to`, into `through`.
 TUFT_INLINE void faces(Work& o, Faces& f, const Geometry& g, const float* p, const float* mobility, int k, int first,
                        int second, float share) {
-    float *a = &f.a[k], *b = &f.b[k], *through = &o.through[0][k];
+    float *a = &f.a[k], *b = &f.b[k], *through = &o.through[k];
 #pragma GCC ivdep
     for (int x = 0; x < kSide; ++x) {
         const int from = k + first + x, to = k + second + x;
@@ -168,7 +168,7 @@ TUFT_INLINE void faces(Work& o, Faces& f, const Geometry& g, const float* p, con
 /// Adds what came through faces into texel k from k + `in`, less what went at k + `out`.
 TUFT_INLINE void add_flow(Work& o, int in, int out) {
     for (int row = 0; row < kSide; ++row) {
-        const float* w = &o.through[0][field_at(0, row)];
+        const float* w = &o.through[field_at(0, row)];
         float* dw = o.dw.data() + row * kSide;
 #pragma GCC ivdep
         for (int x = 0; x < kSide; ++x) dw[x] += w[x + in] - w[x + out];
@@ -194,7 +194,7 @@ TUFT_CLONES void flow_by_tension(Work& o, const Geometry& g, const Grid<16>& t, 
         const Carried c = carried(first[0], p[k], p[k + 1], most_of(o, g, k, k + 1), o.rate[k], o.rate[k + 1]);
         o.x.a[k] = c.a;
         o.x.b[k] = c.b;
-        o.through[0][k] = c.flow;
+        o.through[k] = c.flow;
     }
     add_flow(o, -1, 0);
     for (int row = -1; row < kSide; ++row)
@@ -211,7 +211,7 @@ TUFT_CLONES void flow_by_tension(Work& o, const Geometry& g, const Grid<16>& t, 
                                       o.rate[k + from], o.rate[k + to]);
             f.a[k] = c.a;
             f.b[k] = c.b;
-            o.through[0][k] = c.flow;
+            o.through[k] = c.flow;
         }
         add_flow(o, -to, -from);
     };

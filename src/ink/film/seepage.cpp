@@ -1,0 +1,205 @@
+#include "ink/film/seepage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/system/parallel.h"
+#include "ink/film/film_seams.h"
+
+namespace tuft::ink::wet {
+namespace {
+
+constexpr std::size_t kGrain = 8;  // tiles
+constexpr int kMostStages = 60;
+// Film units: by so little rounding may bring an amount below 0.
+constexpr float kRounding = 1e-5f;
+constexpr float kMostNear = 8;         // of what smears between two texels, over that of whole texels side by side
+constexpr float kMostSmeared = 0.04f;  // of the lesser amount, times the link's weight
+constexpr Plane kDry{};
+
+/// Stages of a step in which (with one stage) `part` of a texel would leave it; kMostStages at most.
+int stages_of(double part) {
+    const double n = std::ceil(0.5 * (std::sqrt(9 + 16 * part) - 3) * (1 - 1e-9));
+    return static_cast<int>(std::clamp(n, 1.0, static_cast<double>(kMostStages)));
+}
+double part_of(int n_stages) {
+    return (n_stages * n_stages + 3 * n_stages) / 4.0;
+}
+
+}  // namespace
+
+bool Seepage::find(const TileList& tiles, std::span<const Sources> sources) {
+    const auto& list = tiles.list;
+    std::vector<std::uint8_t> wanted(list.size(), 0);
+    for (std::uint32_t at = 0; at < list.size(); ++at)
+        if (sources[at].liquid[0] || sources[at].liquid[1]) {
+            for (const std::uint32_t i : list[at].around)
+                if (i != kNone) wanted[i] = 1;
+            for (const Beyond& other : list[at].others)
+                if (other.linked && other.place != kNone) wanted[other.place] = 1;
+        }
+    places_.clear();
+    for (std::uint32_t i = 0; i < list.size(); ++i)
+        if (wanted[i]) places_.push_back(i);
+    return !places_.empty();
+}
+
+void Seepage::take_tiles(const TileList& tiles, std::span<const Sources> sources) {
+    for (auto& tile : tiles_) spare_.push_back(std::move(tile));
+    tiles_.clear();
+    set_of_.assign(tiles.list.size(), kNone);
+    for (const std::uint32_t place : places_) {
+        set_of_[place] = static_cast<std::uint32_t>(tiles_.size());
+        if (spare_.empty()) spare_.push_back(std::make_unique<SeepTile>());
+        tiles_.push_back(std::move(spare_.back()));
+        spare_.pop_back();
+        SeepTile& tile = *tiles_.back();
+        tile.place = place;
+        const auto [w, s] = sources[place].liquid;
+        tile.film = (w ? w : &kDry)->data();
+        tile.start = (s ? s : &kDry)->data();
+    }
+    parallel_for(tiles_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) open_tile(*tiles_[i], tiles.list[tiles_[i]->place]);
+    });
+}
+
+void Seepage::open_tile(SeepTile& tile, const Active& active) const {
+    static constexpr auto kAll = [] {
+        std::array<float, kTexels> ones;
+        ones.fill(1);
+        return ones;
+    }();
+    const auto in_set = [&](std::uint32_t place) { return place == kNone ? kNone : set_of_[place]; };
+    std::array<const float*, 9> open;
+    for (std::size_t i = 0; i < 9; ++i) {
+        tile.around[i] = in_set(active.around[i]);
+        open[i] = tile.around[i] == kNone ? kDry.data() : kAll.data();
+    }
+    gather_field(tile.open, open);
+    tile.links.clear();
+    for (std::size_t i = 0; i < active.links.size(); ++i) {
+        const atlas::SeamLink& l = active.links[i];
+        const std::uint32_t other = in_set(active.others[active.link_others[i]].place);
+        if (other != kNone)
+            tile.links.push_back({other, l.texel, l.other_texel, l.weight, static_cast<float>(l.apart) / 64});
+    }
+}
+
+Field Seepage::padded(const SeepTile& tile, int plane) const {
+    std::array<const float*, 9> from;
+    for (std::size_t i = 0; i < 9; ++i)
+        from[i] = tile.around[i] == kNone ? kDry.data() : plane_of(*tiles_[tile.around[i]], plane);
+    Field field;
+    std::fill(field.begin() + kRow * kRow, field.end(), 0.0f);
+    gather_field(field, from);
+    return field;
+}
+
+const float* Seepage::plane_of(const SeepTile& tile, int plane) {
+    if (plane == kStart) return tile.start;
+    return plane == kCarried ? tile.carried.data() : tile.s[static_cast<std::size_t>(plane)].data();
+}
+
+bool Seepage::run_stages(const TileList& tiles, double flow, double soak, int n_stages) {
+    for (auto& t : tiles_) {
+        t->faces = {};
+        t->soaked = {};
+        for (SeepLink& l : t->links) l.through = {};
+        t->beyond.fill(0);
+    }
+    for (int j = 1; j <= n_stages; ++j) {
+        const SeepStage stage{
+            .flow = static_cast<float>(flow * params_.pores / (kSaturationPower + 1) / part_of(n_stages)),
+            .soak = static_cast<float>(soak / part_of(n_stages)),
+            .per_pores = static_cast<float>(1 / params_.pores),
+            .now = static_cast<float>(2 * j + 1) / static_cast<float>(j + 2),
+            .before = static_cast<float>(j - 1) / static_cast<float>(j + 2),
+            .from = (j + 1) % 2};
+        const int from = j == 1 ? kStart : stage.from;
+        parallel_for(tiles_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) run_stage(tiles, *tiles_[i], from, stage);
+        });
+        last_ = 1 - stage.from;
+    }
+    return std::all_of(tiles_.begin(), tiles_.end(), [](const auto& t) { return t->least >= -kRounding; });
+}
+
+void Seepage::run_stage(const TileList& tiles, SeepTile& tile, int from, const SeepStage& stage) const {
+    for (const SeepLink& l : tile.links) tile.beyond[l.texel] = 0;
+    for (SeepLink& l : tile.links) {
+        seep_over_link(l, plane_of(tile, from)[l.texel], plane_of(*tiles_[l.other], from)[l.other_texel], stage);
+        tile.beyond[l.texel] += l.through[static_cast<std::size_t>(1 - stage.from)];
+    }
+    seep_stage(tile, padded(tile, from), *tiles.list[tile.place].geometry, stage);
+}
+
+double Seepage::solve(const TileList& tiles, std::span<const Sources> sources, double dt) {
+    take_tiles(tiles, sources);
+    double stiffness = 4, w = 0, most = 0;
+    for (const auto& t : tiles_) {
+        const Active& active = tiles.list[t->place];
+        const auto own = static_cast<double>(active.stiffness);
+        stiffness = std::max({stiffness, own, t->links.empty() ? 0 : own + kSeamPart});
+        w = std::max(w, static_cast<double>(active.outcome.most_w));
+        most = std::max(most, static_cast<double>(active.outcome.most_s + active.outcome.most_w) / params_.pores);
+    }
+    const double area = tiles.map.texel_size * tiles.map.texel_size,
+                 rate = params_.suction / (kFrontConstant * kFrontConstant) / area,
+                 fastest = std::pow(std::min(most, 1.0), kSaturationPower),
+                 leaving = rate * stiffness * fastest + params_.absorbency * (1 + w / params_.pores);
+    if (dt * leaving > part_of(kMostStages)) dt = part_of(kMostStages) / leaving;
+    while (!run_stages(tiles, dt * rate, dt * params_.absorbency, stages_of(dt * leaving)) && dt * leaving > 1)
+        dt *= 0.5;
+    parallel_for(tiles_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            smear_links(*tiles_[i]);
+            find_carried(*tiles_[i], tiles);
+        }
+    });
+    return dt;
+}
+
+void Seepage::smear_links(SeepTile& tile) const {
+    const auto total = [](const SeepTile& t, std::uint8_t texel) { return t.start[texel] + t.film[texel]; };
+    for (SeepLink& l : tile.links) {
+        const float near = std::min(std::max(1 / std::max(l.apart * l.apart, 1e-6f), 1.0f), kMostNear) - 1;
+        const float least = std::min(total(tile, l.texel), total(*tiles_[l.other], l.other_texel));
+        l.smeared = 0.5f * std::min(near * std::abs(l.through[static_cast<std::size_t>(last_)]),
+                                    kMostSmeared * l.weight * least);
+    }
+}
+
+void Seepage::find_carried(SeepTile& tile, const TileList& tiles) const {
+    const auto passing = static_cast<float>(1 - params_.retention), grip = static_cast<float>(params_.grip);
+    Plane rate;
+    for (int i = 0; i < kTexels; ++i) {
+        const float total = tile.film[i] + tile.start[i];
+        rate[i] = total > 0 ? passing / std::max(total, grip) : 0;
+    }
+    limit_carried(tile, *tiles.list[tile.place].geometry, last_, rate);
+}
+
+void Seepage::flow(std::uint32_t place, const TileList& tiles, std::span<const Sources> sources, int pigments,
+                   Work& work, Crossing& crossing) const {
+    const SeepTile& tile = *this->tile(place);
+    const Active& active = tiles.list[place];
+    seepage_flow(work, tile, *active.geometry, last_, padded(tile, kCarried));
+    crossing.clear(tile.links.size(), pigments);
+    for (const SeepLink& l : tile.links) {
+        const SeepTile& other = *tiles_[l.other];
+        const Sources& from = sources[other.place];
+        for (int p = 0; p < pigments; ++p) {
+            const Plane* open = from.open[static_cast<std::size_t>(p)];
+            crossing.beyond[static_cast<std::size_t>(p) * crossing.links + crossing.size] = at(open, l.other_texel);
+            crossing.pigments |= static_cast<std::uint32_t>(open != nullptr) << p;
+        }
+        const float through = l.through[static_cast<std::size_t>(last_)];
+        SeamLanes& lanes = crossing.lanes[crossing.size / kSide];
+        lanes.a[crossing.size % kSide] = (std::max(through, 0.0f) + l.smeared) * tile.carried[l.texel];
+        lanes.b[crossing.size % kSide] = (std::min(through, 0.0f) - l.smeared) * other.carried[l.other_texel];
+        crossing.texels[crossing.size++] = l.texel;
+    }
+}
+
+}  // namespace tuft::ink::wet
