@@ -17,21 +17,6 @@ struct Joint {
     std::vector<const Trail*> trail;     ///< [trails]
 };
 
-Cut cut_between(const Cut& p, const Cut& q, double f) {
-    const auto unit = [](const Vec3& v, const Vec3& otherwise) {
-        const double size = glm::length(v);
-        return size > 1e-9 ? v / size : otherwise;
-    };
-    const Vec2 turn = glm::mix(p.turn, q.turn, f);
-    return {glm::mix(p.centre, q.centre, f),
-            std::lerp(p.z, q.z, f),
-            std::lerp(p.a, q.a, f),
-            std::lerp(p.b, q.b, f),
-            unit(glm::mix(p.e, q.e, f), p.e),
-            unit(glm::mix(p.m, q.m, f), p.m),
-            glm::dot(turn, turn) > 1e-6 ? glm::normalize(turn) : p.turn};
-}
-
 constexpr double kPast = 0.02;  ///< of the hair, that one of two joined ends may touch further
 
 /// A trail that is looked at from its tip to its root.
