@@ -124,4 +124,9 @@ std::vector<Outline> outlines_of(std::span<const Trail> trails, int points, std:
 std::vector<Trail> leapt_trails(std::span<const Trail> trails, const Frame& frame, std::span<const Trail> before,
                                 const Frame& frame_before, const Vec2& hand);
 
+/// Returns trails between those of the pose before, `before` of `leapt_trails`, and `trails`, pose by pose, none of
+/// which leaps to the next: where hair leaves a mark each, all that it passed over. Linear in the sections at equal
+/// places of a trail.
+std::vector<Trail> trails_passed(std::span<const Trail> trails, std::span<const Trail> before);
+
 }  // namespace tuft::footprint

@@ -124,9 +124,10 @@ Outline outline_of(const Joint& joint, int points) {
     return closed_outline(envelope, patch, {*front, *rear}, points, joint.trail.front()->strip);
 }
 
-constexpr double kLeap = 0.4;     // of a patch's extent: what it moves by more, it leaps
-constexpr int kSweptSamples = 8;  // sections of a trail that leapt
-constexpr double kMostArc = 1.2;  // of the distance of a chord's middle; 1.155 in a ring of six
+constexpr double kLeap = 0.4;       // of a patch's extent: what it moves by more, it leaps
+constexpr int kSweptSamples = 8;    // sections of a trail that leapt
+constexpr double kMostPassed = 24;  // poses of a leap
+constexpr double kMostArc = 1.2;    // of the distance of a chord's middle; 1.155 in a ring of six
 
 /// Extent of what of a trail lies under the surface, in a direction of the stamp, metres.
 double extent_along(const Trail& trail, const Vec2& direction) {
@@ -230,6 +231,33 @@ std::vector<Trail> leapt_trails(std::span<const Trail> trails, const Frame& fram
     if (!leapt) return {};
     std::vector<Trail> out(before.begin(), before.end());
     change_frame(out, frame_before, frame);
+    return out;
+}
+
+std::vector<Trail> trails_passed(std::span<const Trail> trails, std::span<const Trail> before) {
+    std::vector<const Trail*> was;
+    double steps = 0;  // of a leap each
+    for (const Trail& trail : trails) {
+        was.push_back(same_branch(trail, before));
+        if (!was.back()) continue;
+        const Vec2 tip = trail.cuts.front().centre - was.back()->cuts.front().centre,
+                   root = trail.cuts.back().centre - was.back()->cuts.back().centre;
+        const Vec2 most = glm::length(tip) > glm::length(root) ? tip : root;
+        const double way = glm::length(most);
+        if (way > 1e-9) steps = std::max(steps, way / (kLeap * extent_along(trail, most / way)));
+    }
+    std::vector<Trail> out;
+    const int poses = static_cast<int>(std::min(std::ceil(steps), kMostPassed));
+    for (int pose = 1; pose < poses; ++pose)
+        for (std::size_t k = 0; k < trails.size(); ++k) {
+            if (!was[k]) continue;
+            const double f = static_cast<double>(pose) / poses;
+            Trail& trail = out.emplace_back(trails[k]);
+            for (std::size_t i = 0; i < trail.cuts.size(); ++i) {
+                trail.cuts[i] = cut_between(was[k]->cuts[i], trails[k].cuts[i], f);
+                trail.along[i] = std::lerp(was[k]->along[i], trails[k].along[i], f);
+            }
+        }
     return out;
 }
 
