@@ -103,6 +103,10 @@ void spread_trails(std::vector<Trail>& trails, HairTracks& tracks, const SpreadO
 /// draws together behind its point.
 void gather_trails(std::vector<Trail>& trails, double part);
 
+/// Spreads the sections of spines of a row as far as midway to their neighbours, at constant area: hair that is set
+/// between two spines lies between them. To three times their width at most.
+void fill_rows(std::vector<Trail>& trails);
+
 /// Adds the upright hair round the foot of the axis, by `foot.share`: a straight taper from the widest section to
 /// the axis' foot, with a round end. Without it the point, which touches first and then slides aside, leaves a
 /// spur. For an unsplit tuft.
