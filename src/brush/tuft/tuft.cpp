@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brush/tuft/ferrule.h"
 #include "brush/tuft/foam.h"
 #include "brush/tuft/spine.h"
 #include "brush/tuft/wide_tuft.h"
@@ -185,8 +186,10 @@ TuftState bend_wide(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> 
     state.energy.lost += lost * p.stiffness / p.length;
     state.energy.contact += solved.coupling_energy * p.stiffness / p.length;
     const double bridged = std::max(tuft.wetness * solved.film_range, p.hair_diameter);
-    // The hair of a ring that splays is spread over the gap between two spines, and leaves as many narrow ones.
-    const double shared = has_broad_side(p) ? 1 : std::sqrt(static_cast<double>(p.bristles) / p.spines);
+    // Hair that splays is spread over the gap between two spines, and leaves as many narrow ones as hairs stand side by
+    // side in a spine.
+    const double thick_over_wide = has_broad_side(p) ? face_over_pitch(p) : 1;
+    const double shared = std::sqrt(static_cast<double>(p.bristles) / (p.spines * thick_over_wide));
     for (const Beside& beside : tuft.beside) {
         // Beyond the end of the shorter one its tip says whether the skin goes on.
         const std::vector<double>& gap = beside.gap;

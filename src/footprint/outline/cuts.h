@@ -29,6 +29,9 @@ struct Cut {
     Vec2 at(double cos_w, double sin_w) const { return centre + a * cos_w * Vec2(e) + b * sin_w * Vec2(m); }
 };
 
+/// The section at the part f of the way between two, linear in all that it has.
+Cut cut_between(const Cut& p, const Cut& q, double f);
+
 /// Of each cut of a trail, by how much the gap to a neighbouring branch is wider than ink bridges, metres; see
 /// brush::Opening.
 struct TrailOpening {
@@ -44,6 +47,7 @@ struct Trail {
     std::size_t trunk = 0;               ///< index of the first cut of the whole tuft, after those of the sub-spine
     double length = 1;                   ///< of the branch's hair over the tuft's
     bool strip = false;                  ///< a spine of a row: its hair fills a rectangle, not a disc
+    bool between = false;                ///< of hair between this branch, which is off the surface, and one on it
     std::vector<Vec2> corners;           ///< of that strip, see brush::Branch
     std::vector<TrailOpening> openings;  ///< to neighbours that follow in brush::TuftState::openings
 
@@ -59,8 +63,12 @@ struct TrailPart {
     std::size_t begin = 0, end = 0;  ///< cuts [begin, end)
 };
 
-/// Returns the touching parts of all branches, cut into sections; see `outlines_of` (outline.h) for the arguments.
-/// `length` is the tuft's, metres.
+/// Returns the touching parts of all branches, cut into sections, in the order of the branches; see `outlines_of`
+/// (outline.h) for the arguments. `length` is the tuft's, metres.
+///
+/// Of a row also where ink joins a spine that touches to one that does not: the hair between them has the skin's form,
+/// X(λ) = (1 − λ) F_k + λ F_{k+1} at equal parts of the hair, and touches up to some λ. The trail of the spine off the
+/// surface lies there, λ times as wide.
 std::vector<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
                                double length, double film);
 
@@ -95,6 +103,10 @@ void spread_trails(std::vector<Trail>& trails, HairTracks& tracks, const SpreadO
 /// draws together behind its point.
 void gather_trails(std::vector<Trail>& trails, double part);
 
+/// Spreads the sections of spines of a row as far as midway to their neighbours, at constant area: hair that is set
+/// between two spines lies between them. To three times their width at most.
+void fill_rows(std::vector<Trail>& trails);
+
 /// Adds the upright hair round the foot of the axis, by `foot.share`: a straight taper from the widest section to
 /// the axis' foot, with a round end. Without it the point, which touches first and then slides aside, leaves a
 /// spur. For an unsplit tuft.
@@ -115,5 +127,10 @@ std::vector<Outline> outlines_of(std::span<const Trail> trails, int points, std:
 /// leapt. `frame_before`: of `before`; `hand`: displacement of the hand, metres, (u, v) of `frame`.
 std::vector<Trail> leapt_trails(std::span<const Trail> trails, const Frame& frame, std::span<const Trail> before,
                                 const Frame& frame_before, const Vec2& hand);
+
+/// Returns trails between those of the pose before, `before` of `leapt_trails`, and `trails`, pose by pose, none of
+/// which leaps to the next: where hair leaves a mark each, all that it passed over. Linear in the sections at equal
+/// places of a trail.
+std::vector<Trail> trails_passed(std::span<const Trail> trails, std::span<const Trail> before);
 
 }  // namespace tuft::footprint

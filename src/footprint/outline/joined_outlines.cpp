@@ -17,21 +17,6 @@ struct Joint {
     std::vector<const Trail*> trail;     ///< [trails]
 };
 
-Cut cut_between(const Cut& p, const Cut& q, double f) {
-    const auto unit = [](const Vec3& v, const Vec3& otherwise) {
-        const double size = glm::length(v);
-        return size > 1e-9 ? v / size : otherwise;
-    };
-    const Vec2 turn = glm::mix(p.turn, q.turn, f);
-    return {glm::mix(p.centre, q.centre, f),
-            std::lerp(p.z, q.z, f),
-            std::lerp(p.a, q.a, f),
-            std::lerp(p.b, q.b, f),
-            unit(glm::mix(p.e, q.e, f), p.e),
-            unit(glm::mix(p.m, q.m, f), p.m),
-            glm::dot(turn, turn) > 1e-6 ? glm::normalize(turn) : p.turn};
-}
-
 constexpr double kPast = 0.02;  ///< of the hair, that one of two joined ends may touch further
 
 /// A trail that is looked at from its tip to its root.
@@ -139,9 +124,10 @@ Outline outline_of(const Joint& joint, int points) {
     return closed_outline(envelope, patch, {*front, *rear}, points, joint.trail.front()->strip);
 }
 
-constexpr double kLeap = 0.4;     // of a patch's extent: what it moves by more, it leaps
-constexpr int kSweptSamples = 8;  // sections of a trail that leapt
-constexpr double kMostArc = 1.2;  // of the distance of a chord's middle; 1.155 in a ring of six
+constexpr double kLeap = 0.4;       // of a patch's extent: what it moves by more, it leaps
+constexpr int kSweptSamples = 8;    // sections of a trail that leapt
+constexpr double kMostPassed = 24;  // poses of a leap
+constexpr double kMostArc = 1.2;    // of the distance of a chord's middle; 1.155 in a ring of six
 
 /// Extent of what of a trail lies under the surface, in a direction of the stamp, metres.
 double extent_along(const Trail& trail, const Vec2& direction) {
@@ -245,6 +231,33 @@ std::vector<Trail> leapt_trails(std::span<const Trail> trails, const Frame& fram
     if (!leapt) return {};
     std::vector<Trail> out(before.begin(), before.end());
     change_frame(out, frame_before, frame);
+    return out;
+}
+
+std::vector<Trail> trails_passed(std::span<const Trail> trails, std::span<const Trail> before) {
+    std::vector<const Trail*> was;
+    double steps = 0;  // of a leap each
+    for (const Trail& trail : trails) {
+        was.push_back(same_branch(trail, before));
+        if (!was.back()) continue;
+        const Vec2 tip = trail.cuts.front().centre - was.back()->cuts.front().centre,
+                   root = trail.cuts.back().centre - was.back()->cuts.back().centre;
+        const Vec2 most = glm::length(tip) > glm::length(root) ? tip : root;
+        const double way = glm::length(most);
+        if (way > 1e-9) steps = std::max(steps, way / (kLeap * extent_along(trail, most / way)));
+    }
+    std::vector<Trail> out;
+    const int poses = static_cast<int>(std::min(std::ceil(steps), kMostPassed));
+    for (int pose = 1; pose < poses; ++pose)
+        for (std::size_t k = 0; k < trails.size(); ++k) {
+            if (!was[k]) continue;
+            const double f = static_cast<double>(pose) / poses;
+            Trail& trail = out.emplace_back(trails[k]);
+            for (std::size_t i = 0; i < trail.cuts.size(); ++i) {
+                trail.cuts[i] = cut_between(was[k]->cuts[i], trails[k].cuts[i], f);
+                trail.along[i] = std::lerp(was[k]->along[i], trails[k].along[i], f);
+            }
+        }
     return out;
 }
 

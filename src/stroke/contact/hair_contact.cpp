@@ -197,13 +197,20 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
         uncovered = trails;
     }
     footprint::cover_upright_hair(trails, shape.upright, contact.frame, kSkinFilm);
-    if (by_hair_) shape.outlines = footprint::outlines_of(trails, footprint::OutlineOptions{}.points);
+    std::vector<footprint::Trail> drawn;  // with what leapt since the pose before
+    if (by_hair_) {
+        shape.outlines = footprint::outlines_of(trails, footprint::OutlineOptions{}.points, shape.leapt);
+        drawn = footprint::trails_passed(trails, shape.leapt);
+        drawn.insert(drawn.end(), trails.begin(), trails.end());
+    }
     const footprint::TouchingHair hair{trails, shape.outlines, bundles, branches, edge_of(shape, options_.closed)};
+    footprint::TouchingHair passed = hair;
+    passed.trails = drawn;
     Stamp stamp;
     if (carried)
         draw_shape(stamp, tuft, hair, contact, motion, wetness);
     else if (by_hair_)
-        draw_hairs(stamp, hair, contact, motion, wetness);
+        draw_hairs(stamp, passed, contact, motion, wetness);
     else
         stamp.footprint = std::move(*shape.closed);
     stamp.leapt = !shape.leapt.empty();

@@ -58,6 +58,7 @@ HairShape find_hair(const brush::Tuft& tuft, const contact::Result& contact, con
     if (!brush::is_foam(tuft.preset))
         hair.trails =
             footprint::find_trails(contact.tuft, contact.frame, contact.branch_planes, tuft.preset.length, kSkinFilm);
+    footprint::fill_rows(hair.trails);
     if (!contact.planes.empty() && !tuft.carried) hair.upright = brush::upright_hair_of(tuft, contact.planes.front());
     hair.edge = {.spacing = std::max(tuft.preset.hair_diameter, kLeastSpacing),
                  .seed = tuft.bundles.seed,
