@@ -10,10 +10,28 @@ namespace {
 
 using GridPoint = std::array<std::int64_t, 2>;
 
+constexpr double kLeastArea = 0.45;   // of what a triangle has before it is rounded: more than a third, stretch below 3
+constexpr double kLeastHeight = 1.0;  // grid steps: a corner that rounding shifts by a step shears it by 1 at most
+
+/// Twice the areas, in squared steps of the grid, that triangles shall have at least.
+std::vector<std::int64_t> least_areas(const std::vector<std::array<std::uint32_t, 3>>& faces,
+                                      const std::vector<Vec2>& uv) {
+    std::vector<std::int64_t> least(faces.size());
+    for (std::size_t t = 0; t < least.size(); ++t) {
+        const Vec2 a = double(kUvGrid) * (uv[faces[t][1]] - uv[faces[t][0]]);
+        const Vec2 b = double(kUvGrid) * (uv[faces[t][2]] - uv[faces[t][0]]);
+        const double longest = std::sqrt(std::max({glm::dot(a, a), glm::dot(b, b), glm::dot(b - a, b - a)}));
+        const double twice = std::max(kLeastArea * (a.x * b.y - a.y * b.x), kLeastHeight * longest);
+        least[t] = static_cast<std::int64_t>(std::clamp(std::ceil(twice), 1.0, 1e15));
+    }
+    return least;
+}
+
 class Snapper {
   public:
-    Snapper(const std::vector<std::array<std::uint32_t, 3>>& faces, std::vector<GridPoint>& p)
-        : faces_(faces), p_(p), start_(p.size() + 1, 0), around_(3 * faces.size()) {
+    Snapper(const std::vector<std::array<std::uint32_t, 3>>& faces, const std::vector<std::int64_t>& least,
+            std::vector<GridPoint>& p)
+        : faces_(faces), least_(least), p_(p), start_(p.size() + 1, 0), around_(3 * faces.size()) {
         for (const auto& f : faces)
             for (const std::uint32_t v : f) ++start_[v + 1];
         for (std::size_t v = 0; v < p.size(); ++v) start_[v + 1] += start_[v];
@@ -27,19 +45,22 @@ class Snapper {
         return twice_area(p_[f[0]], p_[f[1]], p_[f[2]]);
     }
 
+    /// Negative where the area is too small.
+    std::int64_t excess(std::uint32_t t) const { return area(t) - least_[t]; }
+
     std::int64_t worst(std::uint32_t v) const {
-        std::int64_t least = area(around_[start_[v]]);
-        for (std::uint32_t i = start_[v] + 1; i < start_[v + 1]; ++i) least = std::min(least, area(around_[i]));
+        std::int64_t least = excess(around_[start_[v]]);
+        for (std::uint32_t i = start_[v] + 1; i < start_[v + 1]; ++i) least = std::min(least, excess(around_[i]));
         return least;
     }
 
-    /// Moves v to the nearest ring of grid points where its triangles are all positive,
+    /// Moves v to the nearest ring of grid points where its triangles are all large enough,
     /// or else where the worst of them is best; true when it moved.
     bool move(std::uint32_t v, std::int64_t reach) {
         const GridPoint here = p_[v];
         std::int64_t best = worst(v);
         GridPoint better = here;
-        for (std::int64_t r = 1; r <= reach && best <= 0; r *= 2)
+        for (std::int64_t r = 1; r <= reach && best < 0; r *= 2)
             for (int k = 0; k < 16; ++k) {
                 constexpr std::int64_t kDx[] = {4, 4, 4, 2, 0, -2, -4, -4, -4, -4, -4, -2, 0, 2, 4, 4};
                 constexpr std::int64_t kDy[] = {0, 2, 4, 4, 4, 4, 4, 2, 0, -2, -4, -4, -4, -4, -4, -2};
@@ -60,6 +81,7 @@ class Snapper {
 
   private:
     const std::vector<std::array<std::uint32_t, 3>>& faces_;
+    const std::vector<std::int64_t>& least_;
     std::vector<GridPoint>& p_;
     std::vector<std::uint32_t> start_, around_;
 };
@@ -71,16 +93,17 @@ std::vector<std::uint32_t> snap_to_floats(const std::vector<std::array<std::uint
     std::vector<GridPoint> p(uv.size());
     for (std::size_t v = 0; v < uv.size(); ++v)
         for (int k = 0; k < 2; ++k) p[v][k] = std::llround(std::clamp(uv[v][k], 0.0, 1.0) * kUvGrid);
+    const std::vector<std::int64_t> least = least_areas(faces, uv);
     std::vector<std::uint32_t> bad;
     for (std::uint32_t t = 0; t < faces.size(); ++t)
-        if (twice_area(p[faces[t][0]], p[faces[t][1]], p[faces[t][2]]) <= 0) bad.push_back(t);
+        if (twice_area(p[faces[t][0]], p[faces[t][1]], p[faces[t][2]]) < least[t]) bad.push_back(t);
     if (!bad.empty()) {
         const auto reach = static_cast<std::int64_t>(kUvGrid / (16.0 * std::max(size, 1u)));
-        Snapper snapper(faces, p);
+        Snapper snapper(faces, least, p);
         for (int sweep = 0; sweep < 16; ++sweep) {
             bool moved = false;
             for (const std::uint32_t t : bad)
-                for (int k = 0; k < 3 && snapper.area(t) <= 0; ++k) moved |= snapper.move(faces[t][k], reach);
+                for (int k = 0; k < 3 && snapper.excess(t) < 0; ++k) moved |= snapper.move(faces[t][k], reach);
             if (!moved) break;
         }
         bad.clear();
