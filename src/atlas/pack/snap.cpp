@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "atlas/pack/raster.h"
 
@@ -12,6 +13,11 @@ using GridPoint = std::array<std::int64_t, 2>;
 
 constexpr double kLeastArea = 0.45;   // of what a triangle has before it is rounded: more than a third, stretch below 3
 constexpr double kLeastHeight = 1.0;  // grid steps: a corner that rounding shifts by a step shears it by 1 at most
+
+constexpr int kSweeps = 16;              // for positive areas
+constexpr int kShortSweeps = 4;          // for the sake of stretch
+constexpr std::int64_t kShortReach = 4;  // grid steps: rounding shifted corners by less than one
+constexpr std::int64_t kFlipped = std::int64_t{1} << 60;
 
 /// Twice the areas, in squared steps of the grid, that triangles shall have at least.
 std::vector<std::int64_t> least_areas(const std::vector<std::array<std::uint32_t, 3>>& faces,
@@ -29,9 +35,8 @@ std::vector<std::int64_t> least_areas(const std::vector<std::array<std::uint32_t
 
 class Snapper {
   public:
-    Snapper(const std::vector<std::array<std::uint32_t, 3>>& faces, const std::vector<std::int64_t>& least,
-            std::vector<GridPoint>& p)
-        : faces_(faces), least_(least), p_(p), start_(p.size() + 1, 0), around_(3 * faces.size()) {
+    Snapper(const std::vector<std::array<std::uint32_t, 3>>& faces, std::vector<GridPoint>& p)
+        : faces_(faces), p_(p), start_(p.size() + 1, 0), around_(3 * faces.size()) {
         for (const auto& f : faces)
             for (const std::uint32_t v : f) ++start_[v + 1];
         for (std::size_t v = 0; v < p.size(); ++v) start_[v + 1] += start_[v];
@@ -40,13 +45,38 @@ class Snapper {
             for (const std::uint32_t v : faces[t]) around_[fill[v]++] = t;
     }
 
+    /// Sets the least area of each triangle.
+    void require(std::span<const std::int64_t> least) { least_ = least; }
+
     std::int64_t area(std::uint32_t t) const {
         const auto& f = faces_[t];
         return twice_area(p_[f[0]], p_[f[1]], p_[f[2]]);
     }
 
-    /// Negative where the area is too small.
-    std::int64_t excess(std::uint32_t t) const { return area(t) - least_[t]; }
+    /// Negative where the area is too small, and far less where it is not positive.
+    std::int64_t excess(std::uint32_t t) const {
+        const std::int64_t own = area(t);
+        return own > 0 ? own - least_[t] : own - kFlipped;
+    }
+
+    /// Triangles whose area is too small.
+    std::vector<std::uint32_t> bad() const {
+        std::vector<std::uint32_t> bad;
+        for (std::uint32_t t = 0; t < faces_.size(); ++t)
+            if (excess(t) < 0) bad.push_back(t);
+        return bad;
+    }
+
+    /// Moves the corners of triangles whose area is too small.
+    void enlarge(std::int64_t reach, int sweeps) {
+        const std::vector<std::uint32_t> small = bad();
+        bool moved = !small.empty();
+        for (int sweep = 0; sweep < sweeps && moved; ++sweep) {
+            moved = false;
+            for (const std::uint32_t t : small)
+                for (int k = 0; k < 3 && excess(t) < 0; ++k) moved |= move(faces_[t][k], reach);
+        }
+    }
 
     std::int64_t worst(std::uint32_t v) const {
         std::int64_t least = excess(around_[start_[v]]);
@@ -81,7 +111,7 @@ class Snapper {
 
   private:
     const std::vector<std::array<std::uint32_t, 3>>& faces_;
-    const std::vector<std::int64_t>& least_;
+    std::span<const std::int64_t> least_;
     std::vector<GridPoint>& p_;
     std::vector<std::uint32_t> start_, around_;
 };
@@ -93,23 +123,13 @@ std::vector<std::uint32_t> snap_to_floats(const std::vector<std::array<std::uint
     std::vector<GridPoint> p(uv.size());
     for (std::size_t v = 0; v < uv.size(); ++v)
         for (int k = 0; k < 2; ++k) p[v][k] = std::llround(std::clamp(uv[v][k], 0.0, 1.0) * kUvGrid);
-    const std::vector<std::int64_t> least = least_areas(faces, uv);
-    std::vector<std::uint32_t> bad;
-    for (std::uint32_t t = 0; t < faces.size(); ++t)
-        if (twice_area(p[faces[t][0]], p[faces[t][1]], p[faces[t][2]]) < least[t]) bad.push_back(t);
-    if (!bad.empty()) {
-        const auto reach = static_cast<std::int64_t>(kUvGrid / (16.0 * std::max(size, 1u)));
-        Snapper snapper(faces, least, p);
-        for (int sweep = 0; sweep < 16; ++sweep) {
-            bool moved = false;
-            for (const std::uint32_t t : bad)
-                for (int k = 0; k < 3 && snapper.excess(t) < 0; ++k) moved |= snapper.move(faces[t][k], reach);
-            if (!moved) break;
-        }
-        bad.clear();
-        for (std::uint32_t t = 0; t < faces.size(); ++t)
-            if (snapper.area(t) <= 0) bad.push_back(t);
-    }
+    const std::vector<std::int64_t> least = least_areas(faces, uv), positive(faces.size(), 1);
+    Snapper snapper(faces, p);
+    snapper.require(positive);
+    snapper.enlarge(static_cast<std::int64_t>(kUvGrid / (16.0 * std::max(size, 1u))), kSweeps);
+    std::vector<std::uint32_t> bad = snapper.bad();
+    snapper.require(least);
+    snapper.enlarge(kShortReach, kShortSweeps);
     for (std::size_t v = 0; v < uv.size(); ++v)
         uv[v] = {static_cast<double>(p[v][0]) / kUvGrid, static_cast<double>(p[v][1]) / kUvGrid};
     return bad;
