@@ -307,5 +307,30 @@ TEST(Snap, EveryTriangleKeepsAnArea) {
     }
 }
 
+/// Largest singular value of the linear map from one triangle to another.
+double largest_stretch(const std::array<Vec2, 3>& from, const std::array<Vec2, 3>& to) {
+    const Vec2 a = from[1] - from[0], b = from[2] - from[0], c = to[1] - to[0], d = to[2] - to[0];
+    const double det = a.x * b.y - a.y * b.x;
+    const Vec2 u = (b.y * c - a.y * d) / det, v = (a.x * d - b.x * c) / det;
+    const double e = glm::dot(u, u), f = glm::dot(u, v), g = glm::dot(v, v);
+    return std::sqrt(0.5 * (e + g + std::sqrt((e - g) * (e - g) + 4 * f * f)));
+}
+
+// Rounding alone turns needles that are a hundredth of a step to four steps high over, or shears them.
+TEST(Snap, RoundingStretchesNoNeedleThreefold) {
+    Random random(5);
+    for (int trial = 0; trial < 2000; ++trial) {
+        const double step = std::exp2(-24), height = step * std::pow(10.0, random.uniform(-2, 0.6));
+        const double angle = random.uniform(0, 6.28), length = random.uniform(0.001, 0.1);
+        const Vec2 along(std::cos(angle), std::sin(angle)), across(-along.y, along.x);
+        const Vec2 first(random.uniform(0.3, 0.6), random.uniform(0.3, 0.6));
+        std::vector<Vec2> uv{first, first + length * along,
+                             first + random.uniform(0.2, 0.8) * length * along + height * across};
+        const std::array<Vec2, 3> before{uv[0], uv[1], uv[2]};
+        EXPECT_TRUE(snap_to_floats({{0, 1, 2}}, uv, 1024).empty());
+        EXPECT_LT(largest_stretch({uv[0], uv[1], uv[2]}, before), 3) << height / step;
+    }
+}
+
 }  // namespace
 }  // namespace tuft::atlas

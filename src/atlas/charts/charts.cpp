@@ -24,7 +24,7 @@ struct Piece {
 };
 
 double stretch_of(const FlatChart& chart) {
-    return chart.l2 * chart.l2 * chart.mesh.area;
+    return chart.l2 * chart.l2 * chart.mesh.area * chart.copies;
 }
 
 double difference(std::span<const FlatChart* const> before, std::span<const FlatChart* const> now) {
@@ -113,6 +113,7 @@ bool flatten_piece(const mesh::TriangleMesh& mesh, CutMesh& cut, const Piece& pi
     const FlatCheck check = check_flat(flat.mesh, flat.uv, options.gap);
     flat.worst = check.linf;
     flat.l2 = check.l2;
+    if (!cut.copies.empty()) flat.copies = cut.copies[piece.triangles[0]];
     if (flat.mesh.faces.size() > 1 && !good(check, options, piece.depth)) return false;
     phase.finish();
     return true;
@@ -179,8 +180,8 @@ std::vector<Piece> cut_long_charts(CutMesh& cut, const ChartOptions& options) {
 StretchBudget::StretchBudget(const CutMesh& cut, double l2) {
     for (const FlatChart& c : cut.charts) {
         used_ += stretch_of(c);
-        all_ += l2 * l2 * c.mesh.area;
-        area_ += c.mesh.area;
+        all_ += l2 * l2 * c.mesh.area * c.copies;
+        area_ += c.mesh.area * c.copies;
     }
 }
 
@@ -226,13 +227,23 @@ ArapOptions trial_arap(const ChartOptions& options) {
     return arap;
 }
 
+double chart_unit(const mesh::TriangleMesh& mesh) {
+    return std::max(std::sqrt(mesh::surface_area(mesh)), 1e-30);
+}
+
 CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& options, const ProgressFn& progress) {
-    CutMesh cut;
-    cut.twin = twin_half_edges(mesh);
-    cut_requested_seams(mesh, options.seams, cut.twin);
+    CutMesh uncut;
+    uncut.twin = twin_half_edges(mesh);
+    cut_requested_seams(mesh, options.seams, uncut.twin);
+    uncut.unit = chart_unit(mesh);
+    return cut_into_charts(mesh, std::move(uncut), options, progress);
+}
+
+CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, CutMesh uncut, const ChartOptions& options,
+                        const ProgressFn& progress) {
+    CutMesh cut = std::move(uncut);
     cut.glued = cut.twin;
     cut.place.resize(mesh.n_triangles());
-    cut.unit = std::max(std::sqrt(mesh::surface_area(mesh)), 1e-30);
     {
         const Patch patch = whole_patch(mesh, cut);
         GluingLimits limits;

@@ -42,6 +42,7 @@ struct FlatChart {
     std::vector<Vec2> uv;       ///< [n_vertices of `mesh`]
     double l2 = 1;              ///< stretch
     double worst = 1;           ///< largest stretch of a triangle
+    std::uint32_t copies = 1;   ///< charts of the atlas that this one stands for
     std::uint32_t version = 0;  ///< unique for every chart and change; 0: not assigned
 };
 
@@ -51,15 +52,22 @@ struct CutMesh {
     std::vector<std::uint32_t> twin;   ///< [3n] opposite half-edges, kNone at requested seams
     std::vector<std::uint32_t> glued;  ///< the same, kNone at seams
     std::vector<FlatChart> charts;
-    std::uint32_t versions = 0;        ///< last assigned version
-    RejectedChanges rejected;          ///< changes that need no second trial
-    std::vector<std::uint32_t> place;  ///< [n_triangles] scratch buffer of `make_chart`
+    std::vector<std::uint32_t> copies;  ///< [n_triangles] triangles that each stands for; empty: one
+    std::uint32_t versions = 0;         ///< last assigned version
+    RejectedChanges rejected;           ///< changes that need no second trial
+    std::vector<std::uint32_t> place;   ///< [n_triangles] scratch buffer of `make_chart`
 };
 
-/// Cuts and flattens the whole mesh. Every triangle lies in one chart.
+/// Cuts and flattens the whole mesh. Every triangle lies in one chart. Of `uncut`, `unit`, `twin` and `copies` are
+/// given. The first overload makes it.
 CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& options, const ProgressFn& progress);
+CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, CutMesh uncut, const ChartOptions& options,
+                        const ProgressFn& progress);
 
-/// Budget of the stretch of all charts together: Σ L2² · area, updated as charts change.
+/// Returns the unit of a mesh: the square root of its surface's area, metres.
+double chart_unit(const mesh::TriangleMesh& mesh);
+
+/// Budget of the stretch of all charts together: Σ L2² · area · copies, updated as charts change.
 class StretchBudget {
   public:
     StretchBudget(const CutMesh& cut, double l2);

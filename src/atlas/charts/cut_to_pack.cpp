@@ -1,6 +1,7 @@
 #include "atlas/charts/cut_to_pack.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -14,12 +15,19 @@
 namespace tuft::atlas {
 namespace {
 
-constexpr int kMostCuts = 9;
+constexpr int kMostCuts = 9;                    // of a few charts
+constexpr int kMostCutsOfMany = 32;             // of many
 constexpr double kLeastOfUse = 0.98;            // that is left when a cut is made for the sake of the next
+constexpr double kNear = 0.97;                  // of what is good enough: a patient search gains about 2 %
+constexpr double kNearAtLast = 0.94;            // the same for the layout that is used
 constexpr double kBeyond = 1.03;                // of the goal, once charts are cut: a short search errs by this
 constexpr double kAsLong = 0.85;                // of the longest chart's length
-constexpr std::size_t kCandidates = 6;          // largest charts that are tried
-constexpr std::size_t kMostCharts = 48;         // with more, small ones fill the gaps
+constexpr std::size_t kCandidates = 6;          // largest of a few charts that are tried
+constexpr std::size_t kLongCandidates = 16;     // longest charts that are tried
+constexpr std::size_t kCandidatesOfMany = 16;   // charts with the emptiest boxes that are tried of many
+constexpr std::size_t kFewCharts = 48;          // with more, small ones fill the gaps between large ones
+constexpr double kCutGainOfMany = 1.004;        // `kCutGain` for many charts, of which each is a small part
+constexpr double kEmpty = 0.01;                 // of the surface, by which a box is larger than its chart
 constexpr std::size_t kMostTriangles = 200000;  // triangles of a chart that is left as it is
 
 std::vector<Vec2> border_of(const FlatChart& chart) {
@@ -36,17 +44,18 @@ double use_of(const Packing& packing, double area) {
            (static_cast<double>(packing.size) * packing.size * packing.pages);
 }
 
-/// A layout of the charts, as good as `goal` asks for where that is near: with many charts, small
-/// ones fill the gaps whichever way they are turned.
+Packing patient_packing(const std::vector<std::vector<Vec2>>& borders, PackOptions options) {
+    options.search = Search::patient;
+    return pack(borders, options);
+}
+
+/// A layout of the charts; a patient search where that may reach what is good enough.
 Packing pack_well(const std::vector<std::vector<Vec2>>& borders, double area, PackOptions options, double goal) {
-    constexpr std::size_t kMany = 128;
-    constexpr double kNear = 0.94;  // of what is good enough
     options.search = Search::full;
     Packing packing = pack(borders, options);
     const double use = use_of(packing, area);
-    if (use >= goal || use < kNear * kGoodUse || borders.size() > kMany) return packing;
-    options.search = Search::patient;
-    Packing better = pack(borders, options);
+    if (use >= goal || use < kNear * kGoodUse) return packing;
+    Packing better = patient_packing(borders, options);
     return use_of(better, area) > use ? better : packing;
 }
 
@@ -54,6 +63,7 @@ Packing pack_well(const std::vector<std::vector<Vec2>>& borders, double area, Pa
 struct Halves {
     std::vector<FlatChart> parts;
     std::vector<std::uint32_t> cut;  // half-edges of the mesh
+    double length = 0;               // of the new seams, over the unit
 };
 
 /// What parts are cut from.
@@ -107,6 +117,7 @@ std::optional<Halves> halve(const mesh::TriangleMesh& mesh, const CutMesh& cut, 
     for (std::uint32_t h = 0; h < seam.size(); ++h) {
         if (!seam[h] || local[h] == kNone) continue;
         local[h] = kNone;
+        halves.length += 0.5 * patch.length[h];
         const std::uint32_t whole = 3 * m.triangles[h / 3] + h % 3;
         glued[whole] = kNone;
         halves.cut.push_back(whole);
@@ -130,31 +141,103 @@ void apply(CutMesh& cut, std::uint32_t chart, const Halves& halves) {
 /// Charts to be cut together.
 using Proposal = std::vector<std::pair<std::uint32_t, Halves>>;
 
-/// Each of the charts with the largest boxes, the two largest together, and those of them that
-/// are about as long as the longest, which may be all that keeps the rest small.
-std::vector<Proposal> proposals(const mesh::TriangleMesh& mesh, const CutMesh& cut, double gap) {
-    std::vector<double> box(cut.charts.size()), length(cut.charts.size());
-    for (std::size_t c = 0; c < box.size(); ++c) {
+/// The smallest rectangle around a chart.
+struct ChartBox {
+    double area = 0, length = 0;
+    double empty = 0;  // area outside the chart
+};
+
+std::vector<ChartBox> boxes_of(const CutMesh& cut) {
+    std::vector<ChartBox> boxes(cut.charts.size());
+    for (std::size_t c = 0; c < boxes.size(); ++c) {
         const Rectangle r = smallest_rectangle(chart_hull(cut.charts[c]));
-        box[c] = r.length * r.width;
-        length[c] = r.length;
+        boxes[c] = {r.length * r.width, r.length, r.length * r.width - cut.charts[c].mesh.area};
     }
-    std::vector<std::uint32_t> order(box.size());
+    return boxes;
+}
+
+/// The charts with the largest value, largest first.
+std::vector<std::uint32_t> largest_by(const std::vector<ChartBox>& boxes, double ChartBox::*value, std::size_t most) {
+    std::vector<std::uint32_t> order(boxes.size());
     std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return box[a] > box[b]; });
-    order.resize(std::min(order.size(), kCandidates));
-    std::vector<std::optional<Halves>> halves(order.size());
-    run_tasks(order.size(), [&](std::size_t i) { halves[i] = halve(mesh, cut, cut.charts[order[i]], gap); });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return boxes[a].*value > boxes[b].*value; });
+    order.resize(std::min(order.size(), most));
+    return order;
+}
+
+std::vector<std::optional<Halves>> halve_all(const mesh::TriangleMesh& mesh, const CutMesh& cut,
+                                             std::span<const std::uint32_t> charts, double gap) {
+    std::vector<std::optional<Halves>> halves(charts.size());
+    run_tasks(charts.size(), [&](std::size_t i) { halves[i] = halve(mesh, cut, cut.charts[charts[i]], gap); });
+    return halves;
+}
+
+/// All charts that are about as long as the longest, which may be all that keeps the rest small.
+void add_longest(std::vector<Proposal>& all, const mesh::TriangleMesh& mesh, const CutMesh& cut,
+                 const std::vector<ChartBox>& boxes, double gap) {
+    const std::vector<std::uint32_t> order = largest_by(boxes, &ChartBox::length, kLongCandidates);
+    std::vector<std::uint32_t> longest;
+    for (const std::uint32_t c : order)
+        if (boxes[c].length >= kAsLong * boxes[order[0]].length) longest.push_back(c);
+    const std::vector<std::optional<Halves>> halves = halve_all(mesh, cut, longest, gap);
+    Proposal together;
+    for (std::size_t i = 0; i < longest.size(); ++i)
+        if (halves[i]) together.push_back({longest[i], *halves[i]});
+    if (!together.empty()) all.push_back(std::move(together));
+}
+
+/// Each of the charts with the largest boxes, and the two largest together.
+std::vector<Proposal> proposals_of_few(const mesh::TriangleMesh& mesh, const CutMesh& cut,
+                                       const std::vector<ChartBox>& boxes, double gap) {
+    const std::vector<std::uint32_t> order = largest_by(boxes, &ChartBox::area, kCandidates);
+    const std::vector<std::optional<Halves>> halves = halve_all(mesh, cut, order, gap);
     std::vector<Proposal> all;
     for (std::size_t i = 0; i < order.size(); ++i)
         if (halves[i]) all.push_back({{order[i], *halves[i]}});
     if (order.size() > 1 && halves[0] && halves[1]) all.push_back({{order[0], *halves[0]}, {order[1], *halves[1]}});
-    const double longest = *std::max_element(length.begin(), length.end());
-    Proposal together;
-    for (std::size_t i = 0; i < order.size(); ++i)
-        if (halves[i] && length[order[i]] >= kAsLong * longest) together.push_back({order[i], *halves[i]});
-    if (together.size() > 1) all.push_back(std::move(together));
     return all;
+}
+
+/// Frames, bows and bent strips, whose boxes are emptiest: one, two, four of them and so on. A single cut among many
+/// charts shows little.
+std::vector<Proposal> proposals_of_many(const mesh::TriangleMesh& mesh, const CutMesh& cut,
+                                        const std::vector<ChartBox>& boxes, double gap) {
+    std::vector<std::uint32_t> order = largest_by(boxes, &ChartBox::empty, kCandidatesOfMany);
+    std::erase_if(order, [&](std::uint32_t c) { return boxes[c].empty < kEmpty; });
+    const std::vector<std::optional<Halves>> halves = halve_all(mesh, cut, order, gap);
+    std::vector<Proposal> all;
+    Proposal together;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        if (halves[i]) together.push_back({order[i], *halves[i]});
+        const bool last = i + 1 == order.size();
+        if (!together.empty() && (last || std::has_single_bit(i + 1))) all.push_back(together);
+    }
+    return all;
+}
+
+std::vector<Proposal> proposals(const mesh::TriangleMesh& mesh, const CutMesh& cut, double gap) {
+    const std::vector<ChartBox> boxes = boxes_of(cut);
+    std::vector<Proposal> all =
+        boxes.size() > kFewCharts ? proposals_of_many(mesh, cut, boxes, gap) : proposals_of_few(mesh, cut, boxes, gap);
+    add_longest(all, mesh, cut, boxes, gap);
+    return all;
+}
+
+double seam_length(const Proposal& proposal) {
+    double length = 0;
+    for (const auto& [chart, halves] : proposal) length += halves.length;
+    return length;
+}
+
+/// The shortest cuts that reach the goal; where none does, those that gain most.
+std::size_t best_proposal(const std::vector<Proposal>& all, const std::vector<double>& use, double goal) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < all.size(); ++i) {
+        const bool both = use[i] >= goal && use[best] >= goal;
+        if (both ? seam_length(all[i]) < seam_length(all[best]) : use[i] > use[best]) best = i;
+    }
+    return best;
 }
 
 std::vector<std::vector<Vec2>> borders_after(std::vector<std::vector<Vec2>> borders, const Proposal& proposal) {
@@ -182,6 +265,8 @@ struct CutLimits {
     double use = 0;     ///< coverage at the start
     double goal = 1;    ///< coverage at which to stop
     int most_cuts = 0;  ///< number of cuts at which to stop
+    double gain = 1;    ///< least ratio of coverage after a cut to that before
+    double least = 1;   ///< the same for a cut made for the sake of the next
 };
 
 /// Cuts while coarse masks show that it gains, until they show the goal or nothing helps. Returns the number of cuts.
@@ -196,13 +281,13 @@ int cut_while_it_gains(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap,
         run_tasks(all.size(), [&](std::size_t i) {
             gained[i] = use_of(pack(borders_after(borders, all[i]), options), limits.area);
             // Two cuts have to gain as much as each of them would.
-            if (gained[i] < limits.goal) gained[i] /= std::pow(kCutGain, all[i].size());
+            if (gained[i] < limits.goal) gained[i] /= std::pow(limits.gain, all[i].size());
         });
-        const auto best = std::max_element(gained.begin(), gained.end());
+        const std::size_t best = best_proposal(all, gained, limits.goal);
         // A cut may gain nothing until the next one is made.
-        if (best == gained.end() || *best < kLeastOfUse * use) break;
-        use = std::max(use, *best);
-        for (const auto& [chart, halves] : all[static_cast<std::size_t>(best - gained.begin())]) {
+        if (all.empty() || gained[best] < limits.least * use) break;
+        use = std::max(use, gained[best]);
+        for (const auto& [chart, halves] : all[best]) {
             apply(cut, chart, halves);
             ++cuts;
         }
@@ -224,22 +309,30 @@ CutToPack cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, 
     coarse.search = Search::coarse;
     CutMesh tried = cut;
     int cuts = 0;
-    for (double now = use; cuts < kMostCuts && now < goal && tried.charts.size() <= kMostCharts;) {
-        report(progress, "cut to pack", double(cuts) / kMostCuts);
+    const bool many = cut.charts.size() > kFewCharts;
+    const int most_cuts = many ? kMostCutsOfMany : kMostCuts;
+    const double gain = many ? kCutGainOfMany : kCutGain;
+    for (double now = use; cuts < most_cuts && now < goal;) {
+        report(progress, "cut to pack", double(cuts) / most_cuts);
         CutLimits limits{.area = area, .use = use_of(pack(chart_borders(tried), coarse), area)};
         limits.goal = kBeyond * limits.use / now * goal;
-        limits.most_cuts = kMostCuts - cuts;
+        limits.most_cuts = most_cuts - cuts;
+        limits.gain = gain;
+        limits.least = many ? 1 : kLeastOfUse;
         const int more = cut_while_it_gains(mesh, tried, gap, coarse, limits);
         if (more == 0) break;
         cuts += more;
         Packing packing = pack_well(chart_borders(tried), area, options, goal);
         now = use_of(packing, area);
-        if (now < goal && now < std::pow(kCutGain, cuts - result.cuts) * use) continue;
+        if (now < goal && now < std::pow(gain, cuts - result.cuts) * use) continue;
         use = now;
         cut = tried;
         result.cuts = cuts;
         result.packing = std::move(packing);
     }
+    if (use >= goal || use < kNearAtLast * kGoodUse) return result;
+    Packing better = patient_packing(chart_borders(cut), options);
+    if (use_of(better, area) > use) result.packing = std::move(better);
     return result;
 }
 

@@ -241,6 +241,7 @@ class Merger {
         if (!lies_flat(check, std::max({options_.worst, a.worst, b.worst}))) return;
         t.flat.worst = check.linf;
         t.flat.l2 = check.l2;
+        t.flat.copies = a.copies;
         t.merged = !misshapen(form_of(t.flat), parts, 1);
     }
 

@@ -258,6 +258,7 @@ class Mover {
             return false;
         flat.worst = check.linf;
         flat.l2 = check.l2;
+        flat.copies = old.copies;
         const double length = smallest_rectangle(chart_hull(flat)).length;
         return length <= options_.longest || length <= smallest_rectangle(chart_hull(old)).length;
     }

@@ -58,12 +58,13 @@ bool untangle(const ChartMesh& chart, std::vector<Vec2>& uv) {
     for (std::size_t t = 0; t < chart.faces.size(); ++t)
         for (const std::uint32_t v : chart.faces[t]) around[fill[v]++] = static_cast<std::uint32_t>(t);
 
+    std::vector<double> area(chart.faces.size());
+    for (std::size_t t = 0; t < area.size(); ++t) area[t] = reference_triangle(chart, t).area;
     // The worst triangle around a vertex, its area over the area it should have.
     const auto worst = [&](std::uint32_t v) {
         double least = 1e300;
         for (std::uint32_t i = start[v]; i < start[v + 1]; ++i)
-            least =
-                std::min(least, signed_area(chart.faces[around[i]], uv) / reference_triangle(chart, around[i]).area);
+            least = std::min(least, signed_area(chart.faces[around[i]], uv) / area[around[i]]);
         return least;
     };
     constexpr double kEnough = 0.05;

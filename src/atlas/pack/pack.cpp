@@ -20,10 +20,12 @@ constexpr double kSmallest = 0.25;           // texels: extent below which a cha
 constexpr double kLeastUse = 1e-3;           // part of the page that charts must cover to "fit"
 constexpr std::uint32_t kCells = 1024;       // cells per side of the page that masks are made on, at most
 constexpr std::uint32_t kCoarseCells = 256;  // the same while searching
+constexpr std::uint32_t kRoughCells = 128;   // where layouts of a few charts are only compared
+constexpr std::size_t kFewCharts = 48;
 constexpr std::uint32_t kMiddleCells = 512;  // and for a second search from where that ends
 constexpr double kStep = 1.01;               // by which the search raises the scale
 constexpr double kFineStep = 1.003;          // the same in the second search
-constexpr double kFinerGain = 1.03;          // of the scale that finer masks allow, at most
+constexpr double kFinerGain = 1.03;          // of the scale that finer masks usually allow
 constexpr double kFinerFall = 0.996;         // steps down from there
 constexpr double kOverhang = 1.3;            // height of the strip while searching, over the page's
 constexpr int kSecondShare = 3;              // of the trials, that the second search gets
@@ -209,7 +211,9 @@ class Packer {
     Layout largest(std::uint32_t size, std::uint32_t pages, Search search) {
         const double full = size * std::sqrt(pages / area_);
         const double least = std::sqrt(kLeastUse) * full;
-        const Page coarse = page(size, kCoarseCells), fine = page(size, kCells);
+        const bool rough = search == Search::coarse && shapes_.size() <= kFewCharts;
+        const Page coarse = page(size, rough ? kRoughCells : kCoarseCells);
+        const Page fine = page(size, kCells);
         Layout best;
         if (fine.cells == 0) return best;
         double step = 0.97;
@@ -272,13 +276,26 @@ class Packer {
         return best;
     }
 
-    /// The same plan on finer masks, which leave less room between charts.
+    /// The same plan on finer masks, which leave less room between charts: far less where charts are about as narrow
+    /// as the coarse cells.
     void refine(const Page& page, std::uint32_t pages, Layout& best) {
-        for (double scale = kFinerGain * best.scale; scale > best.scale; scale *= kFinerFall) {
+        const auto fits = [&](double scale) {
             Layout layout = fill(page, scale, 1, pages, kAllOrNothing);
-            if (!layout.complete()) continue;
+            if (!layout.complete()) return false;
             best = std::move(layout);
+            return true;
+        };
+        double too_large = kFinerGain * best.scale;
+        if (!fits(too_large)) {
+            for (double scale = kFinerFall * too_large; scale > best.scale; scale *= kFinerFall)
+                if (fits(scale)) return;
             return;
+        }
+        do too_large *= kFinerGain;
+        while (fits(too_large));
+        while (best.scale < kFinerFall * too_large) {
+            const double middle = 0.5 * (best.scale + too_large);
+            if (!fits(middle)) too_large = middle;
         }
     }
 

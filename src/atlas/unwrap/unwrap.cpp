@@ -8,12 +8,14 @@
 #include "atlas/atlas.h"
 #include "atlas/charts/charts.h"
 #include "atlas/charts/cut_to_pack.h"
+#include "atlas/charts/equal_parts.h"
 #include "atlas/charts/merge.h"
 #include "atlas/charts/move_seams.h"
 #include "atlas/charts/refine_parameterisation.h"
 #include "atlas/pack/coverage.h"
 #include "atlas/pack/pack.h"
 #include "atlas/pack/snap.h"
+#include "atlas/seams/requested_seams.h"
 #include "atlas/unwrap/file_uvs.h"
 #include "core/system/memory.h"
 
@@ -170,8 +172,6 @@ void make_layout(const mesh::TriangleMesh& mesh, const UnwrapOptions& options, c
                  Layout& layout, Stopwatch& watch, AtlasReport& out) {
     CutMesh& cut = layout.cut;
     Atlas& atlas = layout.atlas;
-    refine_parameterisation(cut, chart_options, options.progress);
-    watch.lap(out, "polish");
     atlas.gutter = options.gutter;
     atlas.corner_uvs.resize(3 * mesh.n_triangles());
     atlas.triangle_chart.resize(mesh.n_triangles());
@@ -215,25 +215,64 @@ void make_layout(const mesh::TriangleMesh& mesh, const UnwrapOptions& options, c
     if (atlas.size == 0) refuse_size(options, cut, 2.0 * options.size);
 }
 
+/// The mesh that is cut into charts: all of it, or the first of each kind of its equal parts.
+class ChartedMesh {
+  public:
+    ChartedMesh(const mesh::TriangleMesh& mesh, const RequestedSeams& seams)
+        : whole_(mesh), twin_(twin_half_edges(mesh)) {
+        cut_requested_seams(mesh, seams, twin_);
+        parts_ = find_equal_parts(mesh, twin_);
+        if (parts_.any())
+            kept_ = kept_mesh(mesh, parts_);
+        else
+            parts_ = {};
+    }
+
+    const mesh::TriangleMesh& mesh() const { return parts_.any() ? kept_ : whole_; }
+
+    CutMesh uncut() const {
+        const double unit = chart_unit(whole_);
+        if (parts_.any()) return uncut_kept_mesh(parts_, twin_, unit);
+        CutMesh cut;
+        cut.unit = unit;
+        cut.twin = twin_;
+        return cut;
+    }
+
+    /// The charts of the whole, best flattened, from those of `mesh`.
+    CutMesh finished(CutMesh cut, const ChartOptions& options, const ProgressFn& progress) const {
+        refine_parameterisation(cut, options, progress);
+        return parts_.any() ? with_copies(whole_, parts_, twin_, cut) : cut;
+    }
+
+  private:
+    const mesh::TriangleMesh& whole_;
+    std::vector<std::uint32_t> twin_;
+    EqualParts parts_;
+    mesh::TriangleMesh kept_;
+};
+
 Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& options) {
     Unwrapped out;
     Stopwatch watch;
     auto [chart_options, merge_options] = chart_limits(mesh, options);
+    const ChartedMesh charted(mesh, options.seams);
     Layout layout;
     CutMesh& cut = layout.cut;
-    cut = cut_into_charts(mesh, chart_options, options.progress);
+    cut = cut_into_charts(charted.mesh(), charted.uncut(), chart_options, options.progress);
     release_free_memory();
     watch.lap(out.report, "charts");
-    merge_charts(mesh, cut, chart_options, merge_options, options.progress);
+    const auto merge = [&] { merge_charts(charted.mesh(), cut, chart_options, merge_options, options.progress); };
+    merge();
     release_free_memory();
     watch.lap(out.report, "merge");
-    const bool blockwise = mesh.n_triangles() >= kBlockwiseThreshold;
+    const bool blockwise = charted.mesh().n_triangles() >= kBlockwiseThreshold;
     for (int round = 0; round < (blockwise ? 1 : kImprovements); ++round) {
-        const bool moved = move_seams(mesh, cut, chart_options, options.progress);
+        const bool moved = move_seams(charted.mesh(), cut, chart_options, options.progress);
         release_free_memory();
         watch.lap(out.report, "move");
         if (!moved) break;
-        merge_charts(mesh, cut, chart_options, merge_options, options.progress);
+        merge();
         watch.lap(out.report, "merge");
     }
     // A few large charts have shorter seams, but may leave more of the page bare.
@@ -242,13 +281,18 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
     if (!blockwise && can_grow && StretchBudget(cut, chart_options.l2_all).left() > kWorthMerging) {
         smaller = layout;
         merge_options.largest_chart = merge_options.largest_at_last;
-        merge_charts(mesh, cut, chart_options, merge_options, options.progress);
+        merge();
         if (cut.charts.size() == smaller->cut.charts.size()) smaller.reset();
         watch.lap(out.report, "merge");
     }
-    make_layout(mesh, options, chart_options, layout, watch, out.report);
+    const auto finish = [&](Layout& of) {
+        of.cut = charted.finished(std::move(of.cut), chart_options, options.progress);
+        watch.lap(out.report, "polish");
+        make_layout(mesh, options, chart_options, of, watch, out.report);
+    };
+    finish(layout);
     if (smaller && layout.use < kGoodUse) {
-        make_layout(mesh, options, chart_options, *smaller, watch, out.report);
+        finish(*smaller);
         if (smaller->use > layout.use) layout = std::move(*smaller);
     }
     out.atlas = std::move(layout.atlas);
