@@ -47,20 +47,22 @@ struct PixelSeed {
 Light sample_light(const Scene& scene, const LightCache& cache, const ViewHit& at, const LightSamples& samples,
                    const PixelSeed& pixel);
 
-/// Per pixel, row-major from the top.
+/// Per pixel or per square of `step` × `step` pixels, at its middle; row-major from the top.
 struct LightBuffer {
     int width = 0, height = 0;
+    int step = 1;
     std::vector<ViewHit> hits;
     std::vector<Light> light;
 
-    /// Light for any sight seen through (x, y), from the pixels round it that show the same
-    /// surface. False when none does.
+    /// Light for any sight seen through (x, y) of the picture, from the squares round it that show the same
+    /// surface. `pixel_size`: of the picture, metres at the sight. False when none does.
     bool find(float x, float y, const ViewHit& at, float pixel_size, Light& light) const;
 };
 
 struct LightBufferOptions {
     LightSamples samples;
     std::uint64_t seed = 1;
+    int step = 1;
     ProgressFn progress;
 };
 

@@ -26,7 +26,7 @@ float likeness(const ViewHit& a, const ViewHit& b, float reach) {
 
 /// Mean and variance of each part over the 7 × 7 pixels of the same surface.
 void local_variance(const LightBuffer& in, const Camera& camera, std::vector<Vec2f>& variance) {
-    const float per_metre = static_cast<float>(2 * camera.tan_half_height / camera.height);
+    const float per_metre = static_cast<float>(2 * camera.tan_half_height / camera.height * in.step);
     parallel_for(in.hits.size(), 2048, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const ViewHit& s = in.hits[k];
@@ -58,7 +58,7 @@ void smooth_light(LightBuffer& buffer, std::vector<Vec2f>& variance, const Camer
     constexpr int kPasses = 4;
     constexpr float kStop = 2.5f;  // standard deviations of noise that still count as the same light
     local_variance(buffer, camera, variance);
-    const float per_metre = static_cast<float>(2 * camera.tan_half_height / camera.height);
+    const float per_metre = static_cast<float>(2 * camera.tan_half_height / camera.height * buffer.step);
     std::vector<Light> out(buffer.light.size());
     std::vector<Vec2f> out_variance(variance.size());
     for (int pass = 0; pass < kPasses; ++pass) {
