@@ -171,7 +171,7 @@ class Camera {
         render::PictureOptions options = options_;
         options.edge_samples = 4;
         options.light_samples = 16;
-        options.light_step = 3;
+        options.light_step = 2;
         if (!moving_ || paint_is_far())
             find_light(moving_, options, render::PictureSeries::Length::moving);
         else

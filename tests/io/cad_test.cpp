@@ -383,7 +383,7 @@ TEST_P(ForeignPart, IsWatertightAndHasTheAreaThatOpenCascadeGives) {
 
 // STEP as shipped: a screw and linked rods of Open CASCADE, the assembly AS1 of the CAx Implementor Forum written by
 // Theorem Solutions from Unigraphics, component 8 of Gmsh's demonstrations, a frame of Pro/Engineer's. The bearing
-// states a resolution of a sixteenth of its size.
+// has no face on its underside.
 INSTANTIATE_TEST_SUITE_P(, ForeignPart,
                          testing::Values(Foreign{"occt-misc", "opencascade/data/step/screw.step"},
                                          Foreign{"occt-misc", "opencascade/data/step/linkrods.step"},

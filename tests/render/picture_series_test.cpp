@@ -118,7 +118,7 @@ TEST(PictureSeries, LightInterpolatedBetweenPixelsIsThatOfThePixels) {
     options.light_samples = 256;
     const Image truth = render_picture(p.mesh, p.query, lit, options);
     options.light_samples = 16;
-    options.light_step = 3;
+    options.light_step = 2;
     options.edge_samples = 4;
     const Image quick = render_picture(p.mesh, p.query, lit, options);
     double sum = 0;

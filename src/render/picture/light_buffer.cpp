@@ -11,9 +11,6 @@ namespace tuft::render {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Times the rays to a box: the floor's even grey shows waves of errors that the lattice of shifts
-// leaves. Only where the first are stopped would be cheaper, but darkens the edges of shadows.
-constexpr int kOnFloor = 4;
 
 /// What comes to `p` from direction `d` but for the boxes.
 Vec3f incoming(const Scene& scene, const LightCache& cache, const Vec3f& p, const Vec3f& d, const Vec2f& jitter,
@@ -86,7 +83,9 @@ Light sample_light(const Scene& scene, const LightCache& cache, const ViewHit& a
     for (std::size_t b = 0; b < samples.boxes.size(); ++b) {
         const Vec2f shift = lattice_shift(x, y, seed, b);
         Vec3f part{0};
-        const int n = (floor ? kOnFloor : 1) * samples.boxes[b];
+        // On the floor errors of the lattice of shifts show as waves. More rays only where the first are stopped would
+        // be cheaper, but darken the edges of shadows.
+        const int n = (floor ? samples.on_floor : 1) * samples.boxes[b];
         for (int i = 0; i < n; ++i) {
             const Vec2f s = wrap(sobol_point(static_cast<std::uint32_t>(i)) + shift);
             const BoxSample l = sample_box(scene.studio.boxes[b], start, at.normal, s);
@@ -178,6 +177,7 @@ LightBuffer fill_light_buffer(const Scene& scene, const LightCache& cache, const
             }
         });
     }
+    if (buffer.step > 1) remove_specks(buffer, camera);
     smooth_light(buffer, variance, camera);
     return buffer;
 }

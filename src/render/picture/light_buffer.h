@@ -34,6 +34,7 @@ struct Light {
 struct LightSamples {
     std::array<int, 3> boxes{8, 3, 3};
     int around = 12;
+    int on_floor = 4;  ///< times `boxes` on the floor, whose even grey shows most
 };
 LightSamples share_samples(int total);
 
@@ -68,6 +69,10 @@ struct LightBufferOptions {
 
 LightBuffer fill_light_buffer(const Scene& scene, const LightCache& cache, const Camera& camera,
                               const LightBufferOptions& options);
+
+/// Limits both parts of the light of each square to the brightest of the squares round it that show the same surface: a
+/// single ray that met a bright spot leaves no speck.
+void remove_specks(LightBuffer& buffer, const Camera& camera);
 
 /// Edge-stopping à-trous smoothing (Dammertz et al. 2010; variance-guided as in Schied et
 /// al. 2017) of both parts of the light. `variance`: of the mean of each part, per pixel.

@@ -132,11 +132,11 @@ struct PictureSeries::State {
 };
 
 void PictureSeries::State::sample_light() {
-    buffer = fill_light_buffer(scene, *cache, camera,
-                               {.samples = share_samples(options.light_samples),
-                                .seed = options.seed,
-                                .step = options.light_step,
-                                .progress = options.progress});
+    LightSamples samples = share_samples(options.light_samples);
+    if (options.light_step > 1) samples.on_floor = 1;
+    buffer = fill_light_buffer(
+        scene, *cache, camera,
+        {.samples = samples, .seed = options.seed, .step = options.light_step, .progress = options.progress});
 }
 
 /// Whether the pixel's middle differs from that of one of the pixels round it by some six codes.
