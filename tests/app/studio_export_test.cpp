@@ -72,12 +72,12 @@ std::string written_by(const std::string& dialog, const std::string& format, con
 
 TEST_F(StudioProgram, DecalSheetsAreWhatTheirDialogSays) {
     const Ran ran = studio(kBowl + kTwoStrokes + written_by("Decal sheets...", "PDF", path("a")) +
-                           "wait-ready\nexpect message pieces\n" + written_by("Decal sheets...", "SVG", path("b")) +
-                           "wait-ready\nexpect message pieces\n" + written_by("Decal sheets...", "DXF", path("c")) +
-                           "wait-ready\nexpect message pieces\n");
+                           "wait-ready\nexpect message Pieces\n" + written_by("Decal sheets...", "SVG", path("b")) +
+                           "wait-ready\nexpect message Pieces\n" + written_by("Decal sheets...", "DXF", path("c")) +
+                           "wait-ready\nexpect message Pieces\n");
     ASSERT_EQ(ran.status, 0) << ran.err << ran.out;
     EXPECT_TRUE(read(path("a.pdf")).starts_with("%PDF"));
-    EXPECT_NE(read(path("b.svg")).find("width=\"210mm\""), std::string::npos);
+    EXPECT_NE(read(path("b.svg")).find("width=\"210.0000mm\""), std::string::npos);
     EXPECT_NE(read(path("c.dxf")).find("CutContour"), std::string::npos);
 }
 

@@ -14,7 +14,7 @@ void export_sheets(PaintContext& context, ExportSheets command) {
     for (const decal::Piece& piece : sheet.pieces) strain = std::max(strain, piece.strain);
     char percent[16];
     std::snprintf(percent, sizeof percent, "%.1f", 100 * strain);
-    context.outbox.report(Message("{} pieces of film, strained by {} % at most: {}", sheet.pieces.size(),
+    context.outbox.report(Message("Pieces of film: {}, strained by {} % at most; {}", sheet.pieces.size(),
                                   std::string(percent), written.front().string()));
     context.publisher.publish();
 }

@@ -41,7 +41,7 @@ render::CameraPath film_path(const std::string& camera, const render::View& seen
 
 /// How long the film is.
 void length_rows(Ui& ui, FilmSettings& c) {
-    constexpr float kWidth = 296;
+    constexpr float kWidth = 330;
     dialog_row(ui, "Length");
     static const std::vector<std::string> kinds{"Of so many seconds", "By the hand's time"};
     std::string kind = kinds[c.by_speed ? 1 : 0];
@@ -67,9 +67,9 @@ void frame_rows_of_film(Ui& ui, FilmSettings& c) {
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("\xc3\x97 %d", c.height);
-    dialog_row(ui, "Frames a second");
+    dialog_row(ui, "Frame rate");
     std::string rate = std::to_string(c.frames_per_second);
-    if (ui.combo("Frames a second", rate, {"12", "25", "30", "50", "60"}, 100)) c.frames_per_second = std::stoi(rate);
+    if (ui.combo("Frame rate", rate, {"12", "25", "30", "50", "60"}, 100)) c.frames_per_second = std::stoi(rate);
     dialog_row(ui, "Camera");
     static const std::vector<std::string> cameras{"As seen now", "Turntable", "All four sides",
                                                   "Front, top, as seen now"};
