@@ -42,6 +42,7 @@ io/font io/image render/brush render/gl
 io/model io/motion render/picture
 io/export io/project io/strokes
 io/sheet
+film
 writer/glyphs
 writer/gesture
 writer/fit writer/layout

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Paints the variants of plan.toml with all cores and shows what came out. usage: run.sh [FOLDER]
+# Paints the variants of a plan with all cores and shows what came out. usage: run.sh [FOLDER] [PLAN]
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 tuft=${TUFT:-build/release/src/cli/tuft}
 out=${1:-results/variants}
+plan=${2:-samples/variants/plan.toml}
 mkdir -p "$out"
 export TUFT_DATA=$PWD
-cp samples/variants/plan.toml samples/strokes/{flat-bamboo,qi-shang-ba-xia}.inkml "$out"
-"$tuft" variants "$out/plan.toml" -o "$out/jobs"
+"$tuft" variants "$plan" -o "$out/jobs"
 "$tuft" variants "$out/jobs" --run
 echo "$out/jobs: table.csv, tolerance.csv, contact-sheet-*.png, tolerance-map-*.png"

@@ -165,10 +165,13 @@ void add_camera(CLI::App* app, View& v) {
     app->add_option_function<std::string>(
            "--size",
            [&v](const std::string& text) {
-               const auto n = numbers(text, 'x', 2, 16384);
-               if (n.empty() || n[0] < 16 || n[1] < 16 || n[0] != std::floor(n[0]) || n[1] != std::floor(n[1]))
-                   throw CLI::ValidationError("--size",
-                                              "'" + excerpt(text) + "' is not WIDTHxHEIGHT, such as 1280x720");
+               constexpr int kLeast = 16, kMost = 16384;
+               const auto n = numbers(text, 'x', 2, kMost);
+               if (n.empty() || n[0] < kLeast || n[1] < kLeast || n[0] != std::floor(n[0]) || n[1] != std::floor(n[1]))
+                   throw CLI::ValidationError(
+                       "--size",
+                       fmt::format("'{}' is not WIDTHxHEIGHT, such as 1280x720, with sides of {} to {} pixels",
+                                   excerpt(text), kLeast, kMost));
                v.width = static_cast<int>(n[0]);
                v.height = static_cast<int>(n[1]);
            },

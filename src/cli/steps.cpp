@@ -261,39 +261,6 @@ render::View picture_view(const View& v, const mesh::TriangleMesh& mesh) {
     return view;
 }
 
-PictureLook make_look(const stroke::Model& model, const stroke::Document* painting, const std::string& material,
-                      bool raking) {
-    PictureLook look;
-    render::Appearance& appearance = look.appearance;
-    const ink::Substrate substrate = material.empty() && painting
-                                         ? painting->appearance().substrate()
-                                         : ink::load_substrate(material.empty() ? "porcelain" : material);
-    appearance.finish = substrate.roughness > 0.45f ? render::Finish::clay : render::Finish::porcelain;
-    appearance.body_colour = Vec3f(substrate.reflectance[0], substrate.reflectance[1], substrate.reflectance[2]);
-    ink::Stack bare{std::vector<ink::LayerView>{}};
-    if (material.empty()) bare.base_colour = &model.base_colour;
-    const ink::Stack stack = painting ? painting->appearance().stack() : bare;
-    appearance.vertex_colours = false;
-    if (!stack.layers.empty() || stack.has_base_colour()) {
-        const ink::ComposeOptions compose = painting ? painting->appearance().compose_options() : ink::ComposeOptions{};
-        look.colour = ink::compose_linear(stack, model.texels, substrate, compose);
-        if (raking) {
-            look.height = ink::compose_height(stack, model.texels, compose);
-            for (float& h : look.height.texels) h *= 1e-6f;
-        }
-        look.point_to_maps(model);
-    }
-    return look;
-}
-
-void PictureLook::point_to_maps(const stroke::Model& model) {
-    const auto* first = reinterpret_cast<const Vec3f*>(colour.texels.data());
-    appearance.maps.size = colour.size;
-    appearance.maps.corner_uvs = model.atlas.corner_uvs;
-    appearance.maps.base_colour = std::span(first, std::size_t{colour.size} * colour.size);
-    appearance.maps.height = height.texels;
-}
-
 render::PictureOptions picture_options(const View& v, const stroke::Model& model) {
     render::PictureOptions options;
     options.width = v.width;
@@ -306,7 +273,7 @@ render::PictureOptions picture_options(const View& v, const stroke::Model& model
 
 render::Image draw_picture(const PictureRequest& request, Console& console) {
     const auto& [model, painting, v, material, frame, count] = request;
-    const PictureLook look = make_look(model, painting, material, v.raking);
+    const film::PictureLook look = film::make_look(model, painting, material, v.raking);
     render::PictureOptions options = picture_options(v, model);
     options.progress = console.progress();
     if (count > 1) options = render::turntable_frame(options, frame, count);

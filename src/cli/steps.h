@@ -9,6 +9,7 @@
 
 #include "cli/arguments.h"
 #include "cli/console.h"
+#include "film/picture_look.h"
 #include "io/model/read_import.h"
 #include "io/project/project.h"
 #include "render/picture/picture.h"
@@ -68,18 +69,6 @@ void check_outputs(const Outputs& outputs);
 /// Writes the exported model and the preview. The project is written while painting.
 void write_outputs(const Outputs& outputs, const stroke::Document& painting, Console& console);
 
-/// Surface of a model as a picture shows it, with its maps.
-struct PictureLook {
-    render::Appearance appearance;  ///< its maps are those below
-    ink::AtlasMap<float> colour, height;
-
-    /// Sets the maps of `appearance` after they were made or replaced.
-    void point_to_maps(const stroke::Model& model);
-};
-/// Returns what is painted on a model, or without `painting` the bare one, with a height map where `raking`.
-/// `material`: of the bare surface; empty: the painting's, else porcelain.
-PictureLook make_look(const stroke::Model& model, const stroke::Document* painting, const std::string& material,
-                      bool raking);
 /// Returns size, camera and lights of the arguments.
 render::PictureOptions picture_options(const View& view, const stroke::Model& model);
 

@@ -24,7 +24,7 @@ CLI::App* add_trajectory(CLI::App& app, TrajectoryWork& work) {
     s->add_option("PROJECT", work.project, "project file (.tuft)")->required();
     s->add_option(
          "-o,--output", work.output,
-         ".json (neutral; 'tuft paint --strokes' reads it), .csv, .urscript, .mod (RAPID), .src (KRL) or .gcode "
+         ".json or .csv (neutral; 'tuft paint --strokes' reads both), .urscript, .mod (RAPID), .src (KRL) or .gcode "
          "(flat sheets)")
         ->required();
     add_frame(s, "--tool", work.tool,

@@ -158,8 +158,10 @@ fs::path find_input(const fs::path& folder, const std::string& name) {
             throw Error(fmt::format("'{}' is a link out of the folder of the plan", excerpt(name)));
         return file;
     }
-    const fs::path shipped = data_folder() / "models" / relative;
-    if (!relative.has_parent_path() && fs::is_regular_file(shipped, ec)) return shipped;
+    for (const char* of : {"models", "samples/strokes"}) {
+        const fs::path shipped = data_folder() / of / relative;
+        if (!relative.has_parent_path() && fs::is_regular_file(shipped, ec)) return shipped;
+    }
     throw Error(fmt::format("there is no file '{}' in the folder of the plan", excerpt(name)));
 }
 

@@ -100,8 +100,9 @@ Task task_of_json(const std::string& text, const std::string& source);
 /// Returns 32 hexadecimal digits of a 128-bit hash of the task's JSON text: its fingerprint.
 std::string hash_of(const Task& task);
 
-/// Returns the path of a file that a plan names: inside `folder`, or where it has no such file a shipped model. Throws
-/// `Error` for absolute names, for names that leave the folder, also by links, and for files that are not there.
+/// Returns the path of a file that a plan names: inside `folder`, or where it has no such file a shipped model or
+/// stroke file. Throws `Error` for absolute names, for names that leave the folder, also by links, and for files that
+/// are not there.
 std::filesystem::path find_input(const std::filesystem::path& folder, const std::string& name);
 
 /// Returns the hash of a file's bytes. Throws `Error` where it cannot be read.

@@ -64,5 +64,59 @@ TEST_F(StudioProgram, AnExportAtAnotherSizeIsPaintedAnew) {
     EXPECT_TRUE(found);
 }
 
+/// Opens a dialog of the File menu, chooses a format and writes to a name.
+std::string written_by(const std::string& dialog, const std::string& format, const std::string& name) {
+    return "click File\nwait 0.1\nclick \"" + dialog + "\"\nwait 0.1\nclick Format\nwait 0.1\nclick " + format +
+           "\nwait 0.1\nclick \"Choose a file...\"\nwait 0.1\nkey ctrl+a\ntype " + name + "\nkey enter\n";
+}
+
+TEST_F(StudioProgram, DecalSheetsAreWhatTheirDialogSays) {
+    const Ran ran = studio(kBowl + kTwoStrokes + written_by("Decal sheets...", "PDF", path("a")) +
+                           "wait-ready\nexpect message Pieces\n" + written_by("Decal sheets...", "SVG", path("b")) +
+                           "wait-ready\nexpect message Pieces\n" + written_by("Decal sheets...", "DXF", path("c")) +
+                           "wait-ready\nexpect message Pieces\n");
+    ASSERT_EQ(ran.status, 0) << ran.err << ran.out;
+    EXPECT_TRUE(read(path("a.pdf")).starts_with("%PDF"));
+    EXPECT_NE(read(path("b.svg")).find("width=\"210.0000mm\""), std::string::npos);
+    EXPECT_NE(read(path("c.dxf")).find("CutContour"), std::string::npos);
+}
+
+TEST_F(StudioProgram, AFilmHasItsFramesAndEndsWithTheWork) {
+    const Ran ran = studio(kBowl + kTwoStrokes + "set film-width 64\nset film-seconds 0.4\nsave work.tuft\n" +
+                           written_by("Film...", "Pictures", path("frames")) + "wait-ready\nexpect message Exported\n");
+    ASSERT_EQ(ran.status, 0) << ran.err << ran.out;
+    const auto frame = [&](int number) {
+        char name[32];
+        std::snprintf(name, sizeof name, "frames/frame-%05d.png", number);
+        return read(path(name));
+    };
+    // 0.4 s of work and 2 s of its end, 25 frames a second.
+    EXPECT_FALSE(frame(60).empty());
+    EXPECT_TRUE(frame(61).empty());
+    EXPECT_EQ(frame(60), frame(10));
+    EXPECT_NE(frame(1), frame(10));
+    // The work is as it was.
+    EXPECT_EQ(tuft("inspect '" + path("work.tuft") + "' --json")["strokes"].size(), 2u);
+}
+
+TEST_F(StudioProgram, AFilmIsStoppedAndPaintingGoesOn) {
+    const Ran ran =
+        studio(kBowl + kTwoStrokes + "set film-seconds 3000\n" + written_by("Film...", "Pictures", path("frames")) +
+               "wait 0.5\nclick Stop\nwait-ready\nexpect message Stopped\n"
+               "stroke 46%,58% 50%,61%\nwait-ready\nexpect strokes 3\n");
+    ASSERT_EQ(ran.status, 0) << ran.err << ran.out;
+    EXPECT_FALSE(fs::exists(path("frames")));
+}
+
+TEST_F(StudioProgram, NothingPaintedIsNeitherCutNorFilmed) {
+    const Ran ran = studio(kBowl + written_by("Decal sheets...", "PDF", path("a")) +
+                           "wait-ready\nexpect message \"nothing is painted\"\n" +
+                           written_by("Film...", "Pictures", path("frames")) +
+                           "wait-ready\nexpect message \"nothing is painted\"\n");
+    ASSERT_EQ(ran.status, 0) << ran.err << ran.out;
+    EXPECT_FALSE(fs::exists(path("a.pdf")));
+    EXPECT_FALSE(fs::exists(path("frames")));
+}
+
 }  // namespace
 }  // namespace tuft::app

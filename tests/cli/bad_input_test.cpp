@@ -152,7 +152,9 @@ TEST_F(BadInput, DiskThatFillsUp) {
         tuft("paint " + sheet() + " --strokes " + good_strokes() + " --atlas-size 256 --project " + path("p.tuft"))
             .status,
         0);
-    expect_refused("export " + path("p.tuft") + " -o " + path("out.glb"), 1, "out.glb", "trap '' XFSZ; ulimit -f 8;");
+    for (const std::string out : {path("out.glb"), path("out.3mf"), path("out.obj")})
+        expect_refused("export " + path("p.tuft") + " -o " + out, 1, fs::path(out).parent_path().string() + "/out",
+                       "trap '' XFSZ; ulimit -f 8;");
 }
 
 TEST_F(BadInput, ProjectThatIsNotOurs) {
@@ -391,6 +393,7 @@ TEST_F(BadInput, WrongUsage) {
     expect_refused("", 2, "subcommand");
     expect_refused("paint " + sheet() + " --strokes " + good_strokes() + " --unit furlong", 2, "furlong");
     expect_refused("render " + sheet() + " -o " + path("a.png") + " --size 12", 2, "WIDTHxHEIGHT");
+    expect_refused("render " + sheet() + " -o " + path("a.png") + " --size 100000x100000", 2, "16 to 16384 pixels");
     expect_refused("paint " + sheet() + " --strokes " + good_strokes() + " --atlas-size -4", 2, "atlas-size");
 }
 

@@ -112,19 +112,21 @@ double overlap_of(const io::ImageF& a, const io::ImageF& b) {
 
 TEST_F(Trajectories, ReadBackPaintTheSameTexels) {
     const std::string project = bowl();
-    const test::Ran ran = tuft("trajectory " + project + " -o " + path("bowl.json") + " --json");
-    ASSERT_EQ(ran.status, 0) << ran.err;
-    EXPECT_GT(nlohmann::json::parse(ran.out).at("largest_force_n").get<double>(), 0.001);
-    const test::Ran back = tuft("paint " + model("bowl.ply") + " --strokes " + path("bowl.json") +
-                                " --atlas-size 1024 --quiet --project " + path("back.tuft"));
-    ASSERT_EQ(back.status, 0) << back.err;
-    std::array<io::ImageF, 2> amounts;
-    for (const bool read_back : {false, true}) {
-        const std::string from = read_back ? path("back.tuft") : project, to = path(read_back ? "b.exr" : "a.exr");
-        ASSERT_EQ(tuft("export " + from + " -o " + to + " --map pigments --quiet").status, 0);
-        amounts[read_back ? 1 : 0] = io::read_image_float(to);
+    const auto amounts = [&](const std::string& from, const std::string& to) {
+        EXPECT_EQ(tuft("export " + from + " -o " + path(to) + " --map pigments --quiet").status, 0);
+        return io::read_image_float(path(to));
+    };
+    const io::ImageF painted = amounts(project, "painted.exr");
+    for (const std::string name : {"json", "csv"}) {
+        const std::string file = path("bowl." + name), again = path("again-" + name + ".tuft");
+        const test::Ran ran = tuft("trajectory " + project + " -o " + file + " --json");
+        ASSERT_EQ(ran.status, 0) << ran.err;
+        EXPECT_GT(nlohmann::json::parse(ran.out).at("largest_force_n").get<double>(), 0.001);
+        const test::Ran back =
+            tuft("paint " + model("bowl.ply") + " --strokes " + file + " --atlas-size 1024 --quiet --project " + again);
+        ASSERT_EQ(back.status, 0) << back.err;
+        EXPECT_GE(overlap_of(painted, amounts(again, name + ".exr")), 0.99) << name;
     }
-    EXPECT_GE(overlap_of(amounts[0], amounts[1]), 0.99);
 }
 
 TEST_F(Trajectories, AreWrittenInEachLanguageAndRefusedWhereTheHolderHits) {

@@ -20,6 +20,7 @@
 #include "io/model/read_3mf.h"
 #include "io/model/read_gltf.h"
 #include "io/model/read_x3d.h"
+#include "io/motion/motion_files.h"
 #include "io/project/project.h"
 #include "io/strokes/inkml.h"
 #include "io/strokes/svg.h"
@@ -183,6 +184,13 @@ void run_task(Input input) {
     });
 }
 
+void run_trajectory(Input input) {
+    refusing([&] {
+        for (const stroke::RecordedStroke& s : io::parse_trajectory_csv(text_of(input), "input.csv"))
+            promise(!s.flat && !s.samples.empty(), "a stroke of a trajectory has places in space");
+    });
+}
+
 void run_entry(Input input) {
     refusing([&] {
         const std::string text = stroke::entry_json(stroke::entry_of({}, text_of(input)));
@@ -241,6 +249,7 @@ constexpr Target kTargets[] = {
     {"substrate", run_substrate, 3000, true},
     {"bias", run_bias, 3000, true},
     {"plan", run_plan, 3000, true},
+    {"trajectory", run_trajectory, 3000, true},
     {"task", run_task, 3000, true},
     {"entry", run_entry, 3000, true},
     {"project", run_project, 500, false},

@@ -129,6 +129,52 @@ TEST_F(TrajectoryFile, ReadsBackToTheBit) {
     EXPECT_EQ(read[0].samples[0].time, 0);
 }
 
+TEST_F(TrajectoryFile, ATableReadsBackToItsDigits) {
+    const MotionProgram p = program(0.3);
+    file_.replace_extension(".csv");
+    write_trajectory(file_, p);
+    const std::vector<stroke::RecordedStroke> read = read_trajectory(file_);
+    ASSERT_EQ(read.size(), 1u);
+    EXPECT_EQ(read[0].brush, "wolf-medium");
+    EXPECT_EQ(read[0].ink, "carbon");
+    EXPECT_EQ(read[0].seed, 99u);
+    EXPECT_EQ(read[0].before.size(), 1u);
+    EXPECT_TRUE(read[0].settings);
+    ASSERT_EQ(read[0].samples.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const brush::Pose& pose = p.trajectory.moves[1].points[i].pose;
+        EXPECT_LT(glm::length(read[0].samples[i].position - pose.position), 1e-9);  // six digits of a millimetre
+        const Quat off = read[0].samples[i].rotation - pose.rotation;
+        EXPECT_LT(std::sqrt(glm::dot(off, off)), 2e-9);  // nine digits of each part
+        EXPECT_NEAR(read[0].samples[i].time, 0.1 * static_cast<double>(i), 1e-6);
+    }
+}
+
+// A robot's log: other columns among them, in another order, by another program's line ends and quotes.
+TEST_F(TrajectoryFile, ATableOfAnotherProgramIsRead) {
+    const std::string text =
+        "\xef\xbb\xbfstroke,qw,qx,qy,qz,\"note, of mine\",z_mm,y_mm,x_mm,t_s\r\n"
+        "7,1,0,0,0,\"a \"\"quote\"\", and\na line\",20,2,1,10\r\n"
+        "7,1,0,0,0,,20,2,3,10.5\r\n"
+        "9,1,0,0,0,,20,2,5,12\r\n";
+    const std::vector<stroke::RecordedStroke> read = parse_trajectory_csv(text, "log.csv");
+    ASSERT_EQ(read.size(), 2u);
+    ASSERT_EQ(read[0].samples.size(), 2u);
+    EXPECT_EQ(read[0].samples[1].time, 0.5);
+    EXPECT_NEAR(read[0].samples[1].position.x, 0.003, 1e-15);
+    EXPECT_EQ(read[1].samples[0].time, 0);
+    EXPECT_TRUE(read[0].brush.empty());
+    EXPECT_FALSE(read[0].settings);
+    for (const char* bad : {"", "t_s,x_mm\n1,2\n", "stroke,qw,qx,qy,qz,z_mm,y_mm,x_mm,t_s\n",
+                            "stroke,qw,qx,qy,qz,z_mm,y_mm,x_mm,t_s\n1,1,0,0,0,2,3\n",
+                            "stroke,qw,qx,qy,qz,z_mm,y_mm,x_mm,t_s\n1.5,1,0,0,0,2,3,4,5\n",
+                            "stroke,qw,qx,qy,qz,z_mm,y_mm,x_mm,t_s\n1,1,0,0,0,2,nan,4,5\n",
+                            "stroke,qw,qx,qy,qz,z_mm,y_mm,x_mm,t_s\n1,0,0,0,0,2,3,4,5\n",
+                            "stroke,qw,qx,qy,qz,z_mm,y_mm,x_mm,t_s,stroke_json\n1,1,0,0,0,2,3,4,5,{}\n",
+                            "stroke,qw,qx,qy,qz,z_mm,y_mm,x_mm,t_s\n\"1,1,0,0,0,2,3,4,5\n"})
+        EXPECT_THROW(parse_trajectory_csv(bad, "log.csv"), Error) << bad;
+}
+
 TEST_F(TrajectoryFile, RefusesWhatItHasNotWritten) {
     const std::string good = trajectory_json(program(0));
     const auto refused = [&](const std::string& text) {

@@ -91,6 +91,41 @@ TEST(PictureSeries, EndsWithThePictureOfItsLight) {
     EXPECT_EQ(series.draw(finished, changed).rgb, render_picture(p.mesh, p.query, finished, Painted::options()).rgb);
 }
 
+TEST(PictureSeries, ThatMovedDrawsThePictureOfItsNewView) {
+    const Painted p;
+    std::vector<Vec3f> map = p.bare;
+    paint_tile(map, 3, 3);
+    const Appearance lit = p.with(map);
+    PictureSeries moving(p.mesh, p.query, lit, Painted::options(), PictureSeries::Length::moving);
+    PictureOptions options = Painted::options();
+    for (int turn = 0; turn < 3; ++turn) {
+        options.view.azimuth += 0.4;
+        moving.look_from(options.view);
+        const Image moved = moving.draw(lit), whole = render_picture(p.mesh, p.query, lit, options);
+        // The dome's light is scaled, not summed anew: rounding.
+        for (std::size_t i = 0; i < whole.rgb.size(); ++i) ASSERT_NEAR(moved.rgb[i], whole.rgb[i], 1) << i;
+    }
+}
+
+// Codes from a picture of many samples, on average over pixels and channels: interpolated light, of fewer rays, is as
+// near to it as that of each pixel.
+TEST(PictureSeries, LightInterpolatedBetweenPixelsIsThatOfThePixels) {
+    const Painted p;
+    const Appearance lit = p.with(p.bare);
+    PictureOptions options = Painted::options();
+    options.width = 360;
+    options.height = 270;
+    options.light_samples = 256;
+    const Image truth = render_picture(p.mesh, p.query, lit, options);
+    options.light_samples = 16;
+    options.light_step = 2;
+    options.edge_samples = 4;
+    const Image quick = render_picture(p.mesh, p.query, lit, options);
+    double sum = 0;
+    for (std::size_t i = 0; i < truth.rgb.size(); ++i) sum += std::abs(truth.rgb[i] - quick.rgb[i]);
+    EXPECT_LT(sum / static_cast<double>(truth.rgb.size()), 1.0);  // of which the dither makes up to half
+}
+
 TEST(CameraPath, IsAtItsKeysAndStandsBetweenEqualOnes) {
     const mesh::TriangleMesh m = make_trough();
     View front, top;

@@ -4,6 +4,7 @@
 
 #include "app/paint/entry_commands.h"
 #include "app/paint/export_command.h"
+#include "app/paint/film_and_sheets.h"
 #include "app/paint/highlight_command.h"
 #include "app/paint/ink_commands.h"
 #include "app/paint/snapshot_commands.h"
@@ -131,6 +132,8 @@ void PaintThread::perform(Command& command) {
                           },
                           [&](HighlightStrokes& c) { highlight_strokes(context, c, queue_); },
                           [&](ExportModel& c) { export_model(context, c); },
+                          [&](ExportSheets& c) { export_sheets(context, std::move(c)); },
+                          [&](ExportFilm& c) { export_film(context, std::move(c)); },
                           [&](SaveProject& c) { save(c); },
                           [&](RetrySaving&) {
                               work.autosave.retry(work.source, work.frame, *work.document);

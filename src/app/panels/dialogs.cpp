@@ -32,6 +32,12 @@ void end_dialog(Ui& ui) {
     ImGui::PopStyleVar();
 }
 
+void dialog_row(Ui& ui, const char* name) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%s", ui.tr(name));
+    ImGui::SameLine(ui.px(130));
+}
+
 namespace {
 
 // Two columns: name and value.

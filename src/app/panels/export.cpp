@@ -38,28 +38,22 @@ void choose_preset(Session& s) {
     s.dialogs.export_settings.size = p.most && painted > p.most ? p.most : 0;
 }
 
-void row(Ui& ui, const char* name) {
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("%s", ui.tr(name));
-    ImGui::SameLine(ui.px(130));
-}
-
 /// The maps that are written, and their size.
 void map_rows(Ui& ui, ExportSettings& c, std::uint32_t painted) {
-    row(ui, "Maps");
+    dialog_row(ui, "Maps");
     bool colour = true;
     ImGui::BeginDisabled();
     ui.toggle("Base colour", colour);
     ImGui::EndDisabled();
-    row(ui, "");
+    dialog_row(ui, "");
     ui.toggle("Roughness", c.roughness, "Occlusion, roughness and metal in one picture");
-    row(ui, "");
+    dialog_row(ui, "");
     ui.toggle("Relief of the ink", c.relief, "A normal map made from the film's height");
     if (preset_of(c.preset).extension == std::string(".exr")) {
-        row(ui, "");
+        dialog_row(ui, "");
         ui.toggle("Pigment amounts", c.pigments, "A channel for each pigment, in film units");
     }
-    row(ui, "Texels per side");
+    dialog_row(ui, "Texels per side");
     static const std::vector<std::string> sizes{"As painted", "512", "1024", "2048", "4096", "8192"};
     std::string size = c.size ? std::to_string(c.size) : "As painted";
     if (ui.combo("Export size", size, sizes, 130))
@@ -72,7 +66,7 @@ void map_rows(Ui& ui, ExportSettings& c, std::uint32_t painted) {
 
 /// The pictures of the model that are drawn beside the maps.
 void picture_rows(Ui& ui, ExportSettings& c) {
-    row(ui, "Pictures");
+    dialog_row(ui, "Pictures");
     static const std::vector<std::string> pictures{"None", "One, as seen now", "24 all round", "72 all round"};
     static constexpr int counts[] = {0, 1, 24, 72};
     const auto at =
@@ -81,7 +75,7 @@ void picture_rows(Ui& ui, ExportSettings& c) {
     if (ui.combo("Pictures of it", picture, pictures, 200))
         c.picture = counts[std::find(pictures.begin(), pictures.end(), picture) - pictures.begin()];
     if (!c.picture) return;
-    row(ui, "");
+    dialog_row(ui, "");
     static const std::vector<std::string> widths{"640", "1280", "1920", "3840"};
     std::string width = std::to_string(c.picture_width);
     if (ui.combo("Picture width", width, widths, 100)) c.picture_width = std::stoi(width);
@@ -111,7 +105,7 @@ void export_dialog(Session& s) {
     ExportSettings& c = s.dialogs.export_settings;
     std::vector<std::string> names;
     for (const Preset& p : kPresets) names.emplace_back(p.name);
-    row(ui, "For");
+    dialog_row(ui, "For");
     if (ui.combo("Preset", c.preset, names)) choose_preset(s);
     ui.note(ui.tr(preset_of(c.preset).note));
     const bool strokes_alone = preset_of(c.preset).extension == std::string(".inkml");

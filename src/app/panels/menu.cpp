@@ -17,6 +17,10 @@ void file_menu(const MenuParts& s, MenuChoice& chosen) {
         s.dialogs.file.show(FileDialog::Purpose::save, project_name(s.work, s.reported.file.project) + ".tuft");
     if (s.ui.menu_item("Export...", name_of(s.keys.chord(Action::export_to)).c_str(), false, ready))
         s.dialogs.show_export = true;
+    if (s.ui.menu_item("Decal sheets...", nullptr, false, ready)) s.dialogs.show_decals = true;
+    s.ui.hint("Lays what is painted flat at true size, to be printed and cut");
+    if (s.ui.menu_item("Film...", nullptr, false, ready)) s.dialogs.show_film = true;
+    s.ui.hint("Films how it was painted, stroke by stroke");
     if (s.ui.menu_item("Revised model...", nullptr, false, ready))
         s.dialogs.file.show(FileDialog::Purpose::revise, s.work->source());
     if (s.has_former_model && s.ui.menu_item("Back to the former model", nullptr, false, ready))

@@ -114,6 +114,8 @@ void in_use_dialog(Session& s);
 /// Asks before work in memory is left.
 void unsaved_work_dialog(Session& s);
 void export_dialog(Session& s);
+void decals_dialog(Session& s);
+void film_dialog(Session& s);
 void settings_dialog(Session& s);
 void keys_dialog(Session& s);
 void about_dialog(Ui& ui, DialogState& dialogs);
@@ -141,6 +143,10 @@ void view_marks(const MarkParts& s, const render::GlCamera& camera);
 
 /// Returns the export command for the dialog's settings.
 ExportModel export_command(const ExportSettings& settings, const Orbit& seen_from, const std::filesystem::path& path);
+/// The same of the dialogs for decal sheets and films.
+ExportSheets sheets_command(const DecalSettings& settings, const stroke::MaskTable& masks,
+                            const std::filesystem::path& path);
+ExportFilm film_command(const FilmSettings& settings, const Orbit& seen_from, const std::filesystem::path& path);
 /// Marks on the atlas: its frame, figures, and the cursor's UV.
 void atlas_marks(const Ui& ui, const AtlasView& atlas, PaintThread& work, const std::optional<Vec2>& cursor);
 /// Creates a mask under an unused name, combined with the active one by `MaskChoice::with`.
@@ -172,5 +178,7 @@ unsigned colour_in_tuft(const BrushSettings& brush, const ColourState& colours, 
 /// Begins a modal window in the centre. Returns true while it is drawn; then call `end_dialog`.
 bool begin_dialog(Ui& ui, const char* title, float width);
 void end_dialog(Ui& ui);
+/// Starts a row of a dialog with a name before its widget.
+void dialog_row(Ui& ui, const char* name);
 
 }  // namespace tuft::app

@@ -6,8 +6,8 @@ bool is_dialog_open(const Session& s) {
     const ProjectState& p = s.project;
     const DialogState& d = s.dialogs;
     return p.inspected || p.opening.running() || (!p.recovery.lost.empty() && !s.paint_thread) || p.in_use ||
-           p.closing.request || d.show_export || d.show_settings || d.show_keys || d.show_about || d.show_mismatches ||
-           d.file.shown() || s.panels.help.manual;
+           p.closing.request || d.show_export || d.show_decals || d.show_film || d.show_settings || d.show_keys ||
+           d.show_about || d.show_mismatches || d.file.shown() || s.panels.help.manual;
 }
 
 bool close_top_dialog(Session& s) {
@@ -33,6 +33,10 @@ bool close_top_dialog(Session& s) {
         s.panels.show_appearance = false;
     else if (d.show_export)
         d.show_export = false;
+    else if (d.show_decals)
+        d.show_decals = false;
+    else if (d.show_film)
+        d.show_film = false;
     else if (p.opening.running())
         p.opening.cancel();
     else if (p.closing.request)

@@ -184,6 +184,12 @@ constexpr Setting kPreferenceSettings[] = {
     {"export-pictures", [](Session& s, const SettingValue& v) { s.dialogs.export_settings.picture = v.whole(0, 360); }},
     {"export-picture-width",
      [](Session& s, const SettingValue& v) { s.dialogs.export_settings.picture_width = v.whole(16, 8192); }},
+    {"film-width",
+     [](Session& s, const SettingValue& v) {
+         s.dialogs.film_settings.width = v.whole(32, 3840);
+         s.dialogs.film_settings.height = s.dialogs.film_settings.width * 9 / 16;
+     }},
+    {"film-seconds", [](Session& s, const SettingValue& v) { s.dialogs.film_settings.seconds = v.within(0.1, 3600); }},
 };
 
 constexpr Setting kArmSettings[] = {

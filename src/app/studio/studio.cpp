@@ -233,6 +233,8 @@ void Studio::draw_dialogs() {
     else if (!s.project.recovery.lost.empty() && !s.paint_thread)
         recovery_dialog(s);
     export_dialog(s);
+    decals_dialog(s);
+    film_dialog(s);
     settings_dialog(s);
     manual_dialog(s.ui, s.panels.help, s.dialogs, s.preferences.keys);
     keys_dialog(s);
@@ -261,6 +263,13 @@ void Studio::take_file(const fs::path& path) {
             return save_ink(s.colours, s.brush.ink, s.status, path);
         case FileDialog::Purpose::arm_recording:
             s.arm.settings.recording = path;
+            return;
+        case FileDialog::Purpose::decals:
+            if (s.paint_thread)
+                s.paint_thread->post(sheets_command(s.dialogs.decal_settings, s.reported.document.masks, path));
+            return;
+        case FileDialog::Purpose::film:
+            if (s.paint_thread) s.paint_thread->post(film_command(s.dialogs.film_settings, s.view.orbit, path));
             return;
         case FileDialog::Purpose::export_model:
             if (s.paint_thread) s.paint_thread->post(export_command(s.dialogs.export_settings, s.view.orbit, path));

@@ -64,7 +64,9 @@ void remember_folder(const fs::path& folder) {
 }
 
 bool FileDialog::reads() const {
-    return purpose_ != Purpose::save && purpose_ != Purpose::export_model && purpose_ != Purpose::save_ink;
+    constexpr Purpose kWrites[] = {Purpose::save, Purpose::export_model, Purpose::save_ink, Purpose::decals,
+                                   Purpose::film};
+    return std::find(std::begin(kWrites), std::end(kWrites), purpose_) == std::end(kWrites);
 }
 
 bool FileDialog::suits(const fs::path& file) const {
@@ -73,6 +75,8 @@ bool FileDialog::suits(const fs::path& file) const {
     if (purpose_ == Purpose::arm_recording) return e == ".csv";
     if (purpose_ == Purpose::export_model) return is_one_of(e, {".glb", ".gltf", ".obj", ".png", ".exr", ".inkml"});
     if (purpose_ == Purpose::ink || purpose_ == Purpose::save_ink) return e == ".toml";
+    if (purpose_ == Purpose::decals) return is_one_of(e, {".pdf", ".svg", ".dxf"});
+    if (purpose_ == Purpose::film) return is_one_of(e, {".mp4", ".gif"});
     if (purpose_ == Purpose::writing) return is_one_of(e, {".svg", ".inkml"});
     if (purpose_ == Purpose::reference) return is_one_of(e, {".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff"});
     return (e == ".tuft" && purpose_ != Purpose::revise) || io::is_model_file(file);
@@ -369,7 +373,7 @@ std::optional<fs::path> FileDialog::draw(Ui& ui, Pictures& pictures) {
     static constexpr const char* titles[] = {
         "Open a model or project", "Save project as", "Export to",       "Writing or drawing to place",
         "Revised model",           "Open an ink",     "Save the ink as", "Reference image",
-        "Recording of an arm"};
+        "Recording of an arm",     "Decal sheets to", "Film to"};
     const char* title = titles[static_cast<int>(purpose_)];
     ImGui::Begin((std::string(ui.tr(title)) + "###files").c_str(), nullptr,
                  ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
@@ -402,10 +406,8 @@ std::optional<fs::path> FileDialog::draw(Ui& ui, Pictures& pictures) {
     }
     const bool entered = draw_name(ui);
     ImGui::SameLine();
-    const char* action = ask_replace_                        ? "Replace"
-                         : reads()                           ? "Open"
-                         : purpose_ == Purpose::export_model ? "Export"
-                                                             : "Save";
+    const bool saves = purpose_ == Purpose::save || purpose_ == Purpose::save_ink;
+    const char* action = ask_replace_ ? "Replace" : reads() ? "Open" : saves ? "Save" : "Export";
     if (ui.button("Cancel", nullptr, 100)) shown_ = false;
     ImGui::SameLine();
     const bool pressed = ui.primary_button(action, 100, name_.text[0] != 0);

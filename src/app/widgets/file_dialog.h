@@ -17,7 +17,19 @@ namespace tuft::app {
 /// Chooses a file to open, or a name to write to.
 class FileDialog {
   public:
-    enum class Purpose { open, save, export_model, writing, revise, ink, save_ink, reference, arm_recording };
+    enum class Purpose {
+        open,
+        save,
+        export_model,
+        writing,
+        revise,
+        ink,
+        save_ink,
+        reference,
+        arm_recording,
+        decals,
+        film
+    };
 
     void show(Purpose purpose, const std::filesystem::path& start);
     bool shown() const { return shown_; }

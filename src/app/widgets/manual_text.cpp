@@ -80,6 +80,8 @@ constexpr ManualPage kPages[] = {
      "* A project (.tuft) is one file with the model, the strokes and all that belongs to them. {save} gives it a "
      "name.\n"
      "* {export} writes GLB, glTF, OBJ, single maps, or the strokes alone. The list says which suits which program.\n"
+     "* Decal sheets, in the File menu, lays the paint flat at true size, to be printed and cut. Film shows how it was "
+     "painted.\n"
      "* After a crash or a power cut the work is offered at the next start, with every finished stroke.\n"
      "* Revised model, in the File menu, paints the strokes on a new version of the model and lists those that do not "
      "fit it.\n"},

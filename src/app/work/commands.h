@@ -9,7 +9,9 @@
 
 #include "app/document/writing.h"
 #include "brush/tuft/tuft.h"
+#include "film/journal_film.h"
 #include "io/project/attachments.h"
+#include "io/sheet/painted_sheet.h"
 #include "render/gl/gl_camera.h"
 #include "stroke/document/document.h"
 #include "stroke/gesture/symmetry.h"
@@ -119,6 +121,16 @@ struct ExportModel {
     int picture_width = 1280;              ///< pixels; 16 : 9
     double azimuth = 0, elevation = 0.45;  ///< radians, of the pictures' view
 };
+/// Writes what is painted, or a mask, as sheets of film. Title and progress of the request are the paint thread's.
+struct ExportSheets {
+    std::filesystem::path path;  ///< .pdf, .svg or .dxf
+    io::SheetRequest request;
+};
+/// Paints the journal again on a second document and films it. The film's progress is the paint thread's.
+struct ExportFilm {
+    std::filesystem::path path;  ///< .mp4, .gif, or a folder of frames
+    film::FilmOptions film;
+};
 /// p → to + rotation (p − from)
 struct RigidMove {
     Vec3 from{0}, to{0};  ///< metres
@@ -161,11 +173,11 @@ struct ShowSnapshot {
 struct RestoreSnapshot {
     std::string id;
 };
-using Command =
-    std::variant<AttachToProject, DetachFromProject, TakeSnapshot, RenameSnapshot, ShowSnapshot, RestoreSnapshot,
-                 BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing, ActOnBrush, UndoStroke, RedoStroke,
-                 SaveProject, RetrySaving, ExportModel, EditStrokes, HighlightStrokes, FillModel, ChangeLayers,
-                 SendTexture, PickInk, TakeInk, RecolourInk, PreviewSubstrate, ChangeMasks, ShowMask, LookFrom>;
+using Command = std::variant<AttachToProject, DetachFromProject, TakeSnapshot, RenameSnapshot, ShowSnapshot,
+                             RestoreSnapshot, BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing,
+                             ActOnBrush, UndoStroke, RedoStroke, SaveProject, RetrySaving, ExportModel, ExportSheets,
+                             ExportFilm, EditStrokes, HighlightStrokes, FillModel, ChangeLayers, SendTexture, PickInk,
+                             TakeInk, RecolourInk, PreviewSubstrate, ChangeMasks, ShowMask, LookFrom>;
 
 /// Returns true when the command changes the work. It is refused while a project is only viewed.
 bool changes_work(const Command& command);

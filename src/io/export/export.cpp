@@ -182,7 +182,16 @@ void write_together(const fs::path& path, const std::function<void(const fs::pat
     if (!fs::create_directory(folder, ec))
         throw Error(path.string(), Message("cannot be written: {}", system_message(ec)));
     const Cleanup cleanup{folder};
-    write(folder);
+    try {
+        write(folder);
+    } catch (const Error& error) {
+        // What is written to the folder will lie beside it.
+        const auto parts = error.message().arguments();
+        if (parts.size() != 2 || fs::path(parts[0].text()).filename() != fs::path(parts[0].text()) ||
+            error.message() != Message("{}: {}", parts[0], parts[1]))
+            throw;
+        throw Error((parent / parts[0].text()).string(), parts[1]);
+    }
     // The model comes last, so that it never points to files that are not there yet.
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path());

@@ -17,6 +17,8 @@
 namespace tuft::io {
 namespace {
 
+constexpr std::size_t kHead = 96;  // bytes that show the format
+
 enum class Format { obj, ply, stl, off, glb, gltf, fbx, dae, threemf, x3d, step, iges };
 
 std::string lower_extension(const std::filesystem::path& path) {
@@ -47,11 +49,21 @@ std::optional<Format> by_extension(const std::filesystem::path& path) {
     return std::nullopt;
 }
 
+/// A first line of IGES [IGES53 2.2.4.1]: 80 columns, in column 73 the section, then the number of the line.
+bool is_iges_line(std::string_view bytes) {
+    constexpr std::size_t kSection = 72, kColumns = 80;
+    if (bytes.size() <= kColumns || (bytes[kColumns] != '\n' && bytes[kColumns] != '\r')) return false;
+    const std::string_view number = bytes.substr(kSection + 1, kColumns - kSection - 1);
+    return bytes[kSection] == 'S' && number.back() == '1' && number.find_first_not_of(" 01") == number.npos &&
+           bytes.substr(0, kSection).find_first_of("\r\n") == number.npos;
+}
+
 /// Formats that say what they are in their first bytes.
 std::optional<Format> by_content(std::string_view bytes) {
     if (bytes.starts_with("glTF")) return Format::glb;
     if (bytes.starts_with("Kaydara FBX")) return Format::fbx;
     if (bytes.starts_with("ISO-10303-21;")) return Format::step;
+    if (is_iges_line(bytes)) return Format::iges;
     if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return Format::ply;
     for (const std::string_view magic : {"OFF", "COFF", "NOFF", "STOFF", "CNOFF", "STNOFF", "STCNOFF"})
         if (bytes.starts_with(magic) && bytes.size() > magic.size() &&
@@ -104,7 +116,7 @@ bool is_cad_file(const std::filesystem::path& path) {
 
 mesh::PolygonSoup read_model(const std::filesystem::path& path, const CadReading& cad) {
     const std::vector<char> bytes = read_file(path);
-    std::optional<Format> format = by_content({bytes.data(), std::min<std::size_t>(bytes.size(), 16)});
+    std::optional<Format> format = by_content({bytes.data(), std::min(bytes.size(), kHead)});
     if (!format) format = by_extension(path);
     if (!format)
         throw Error(path.string(), Message("is no model format tuft knows; it reads {}", std::string(kModelFormats)));

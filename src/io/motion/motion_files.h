@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "motion/trajectory.h"
@@ -9,7 +10,7 @@
 
 /// \file
 /// Trajectories as files: a neutral list (JSON, CSV) and programs for robots and plotters. Called by `tuft trajectory`;
-/// `io::read_strokes` reads JSON back.
+/// `io::read_strokes` reads JSON and CSV back.
 namespace tuft::io {
 
 /// A frame: position in metres and rotation.
@@ -37,7 +38,7 @@ MotionFrame tcp_of(const brush::Pose& pose, const MotionFrame& base);
 /// | extension | form | one point |
 /// |---|---|---|
 /// | .json | neutral list, read by `read_trajectory` | seconds, metres, quaternion, newtons; ferrule, model frame |
-/// | .csv | the same as a table | |
+/// | .csv | the same as a table, read likewise; JSON in the first row of a stroke says what it is painted with | mm |
 /// | .urscript, .script | URScript of Universal Robots | `movep` (strokes) and `movel`: m, rotation vector |
 /// | .mod | RAPID of ABB | `MoveL` with `\T`: mm, quaternion |
 /// | .src | KRL of KUKA | `LIN` with `$VEL.CP`: mm, degrees A B C about z, y, x |
@@ -53,8 +54,16 @@ std::string rapid_text(const MotionProgram& program);
 std::string krl_text(const MotionProgram& program);
 std::string gcode_text(const MotionProgram& program);
 
-/// Returns the strokes of a trajectory in JSON, in space, with what they are painted with. Throws `Error` with the file
-/// for anything that `trajectory_json` cannot have written.
+/// Returns the strokes of a trajectory in JSON or CSV (by the extension), in space, with what they are painted with.
+///
+/// A table of another program, such as a robot's log, needs the columns t_s, x_mm, y_mm, z_mm, qw, qx, qy and qz, named
+/// in its first row, in any order: the ferrule's mouth in the model's frame, hair along −z. With a column `kind` only
+/// the rows that say "stroke" count, with a column `stroke` rows of one number are one stroke. Without `stroke_json`
+/// brush, ink and settings are those of the command line.
+///
+/// Throws `Error` with the file, for JSON that `trajectory_json` cannot have written and a table that lacks a column or
+/// a number.
 std::vector<stroke::RecordedStroke> read_trajectory(const std::filesystem::path& path);
+std::vector<stroke::RecordedStroke> parse_trajectory_csv(std::string_view text, const std::string& source);
 
 }  // namespace tuft::io

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include "core/system/files.h"
 #include "core/text/nesting.h"
 #include "io/motion/motion_files.h"
+#include "io/motion/stroke_description.h"
 
 /// The neutral list of a trajectory, written and read.
 namespace tuft::io {
@@ -32,30 +31,6 @@ json point_json(const motion::Waypoint& p) {
             pose.rotation.y, pose.rotation.z, p.force.x,       p.force.y,       p.force.z};
 }
 
-json stroke_json(const stroke::RecordedStroke& s) {
-    json j{{"brush", s.brush},   {"ink", s.ink},           {"seed", s.seed},       {"label", s.label},
-           {"erases", s.erases}, {"layer", s.names.layer}, {"mask", s.names.mask}, {"before", json::array()}};
-    for (const stroke::Preparation& p : s.before)
-        if (!std::holds_alternative<stroke::Fill>(p)) j["before"].push_back(stroke::preparation_text(p));
-    if (s.settings) j["settings"] = json::parse(stroke::to_json(*s.settings));
-    return j;
-}
-
-stroke::RecordedStroke stroke_of(const json& j) {
-    stroke::RecordedStroke s;
-    s.flat = false;
-    s.brush = j.at("brush").get<std::string>();
-    s.ink = j.at("ink").get<std::string>();
-    s.seed = j.at("seed").get<std::uint64_t>();
-    s.label = j.at("label").get<std::string>();
-    s.erases = j.at("erases").get<bool>();
-    s.names.layer = j.at("layer").get<std::string>();
-    s.names.mask = j.at("mask").get<std::string>();
-    for (const json& text : j.at("before")) s.before.push_back(stroke::preparation_of(text.get<std::string>()));
-    if (j.contains("settings")) s.settings = stroke::settings_from_json(j["settings"].dump());
-    return s;
-}
-
 /// Adds the points of a stroke's move, its clock from 0.
 void add_samples(const json& points, stroke::RecordedStroke& s) {
     double start = 0;
@@ -72,7 +47,7 @@ void add_samples(const json& points, stroke::RecordedStroke& s) {
     }
 }
 
-std::vector<stroke::RecordedStroke> strokes_of(const json& file) {
+std::vector<stroke::RecordedStroke> strokes_of_list(const json& file) {
     if (file.at("format") != kFormat) throw Error("is no trajectory of tuft");
     if (file.at("version").get<int>() > kVersion) throw Error("is of a later version of tuft");
     std::vector<stroke::RecordedStroke> strokes;
@@ -85,6 +60,13 @@ std::vector<stroke::RecordedStroke> strokes_of(const json& file) {
     }
     for (const stroke::RecordedStroke& s : strokes) stroke::check_samples(s);
     return strokes;
+}
+
+std::string lower_extension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
 }
 
 void write_text(const std::filesystem::path& path, const std::string& text) {
@@ -114,26 +96,8 @@ std::string trajectory_json(const MotionProgram& program) {
     return file.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
-std::string trajectory_csv(const MotionProgram& program) {
-    std::string text = "move,kind,stroke,t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,fx_n,fy_n,fz_n\n";
-    for (std::size_t i = 0; i < program.trajectory.moves.size(); ++i) {
-        const motion::Move& move = program.trajectory.moves[i];
-        for (const motion::Waypoint& p : move.points) {
-            const Vec3 mm = 1000.0 * p.pose.position;
-            const Quat& q = p.pose.rotation;
-            text +=
-                fmt::format("{},{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.9f},{:.5f},{:.5f},{:.5f}\n",
-                            i + 1, motion::name_of(move.kind), move.stroke + 1, p.pose.time, mm.x, mm.y, mm.z, q.w, q.x,
-                            q.y, q.z, p.force.x, p.force.y, p.force.z);
-        }
-    }
-    return text;
-}
-
 void write_trajectory(const std::filesystem::path& path, const MotionProgram& program) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lower_extension(path);
     if (extension == ".json") return write_text(path, trajectory_json(program));
     if (extension == ".csv") return write_text(path, trajectory_csv(program));
     if (extension == ".urscript" || extension == ".script") return write_text(path, urscript_text(program));
@@ -146,9 +110,10 @@ void write_trajectory(const std::filesystem::path& path, const MotionProgram& pr
 std::vector<stroke::RecordedStroke> read_trajectory(const std::filesystem::path& path) {
     const std::vector<char> bytes = read_file(path, kMostBytes);
     const std::string name = path.string();
+    if (lower_extension(path) == ".csv") return parse_trajectory_csv({bytes.data(), bytes.size()}, name);
     check_json_nesting({bytes.data(), bytes.size()}, name);
     try {
-        return strokes_of(json::parse(bytes.begin(), bytes.end()));
+        return strokes_of_list(json::parse(bytes.begin(), bytes.end()));
     } catch (const json::exception&) {
         throw Error(name, "is no trajectory of tuft");
     } catch (const Error& error) {

@@ -305,7 +305,7 @@ std::vector<stroke::RecordedStroke> read_strokes(const std::filesystem::path& pa
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (extension == ".json") return read_trajectory(path);
+    if (extension == ".json" || extension == ".csv") return read_trajectory(path);
     return extension == ".svg" ? read_svg(path, options) : read_inkml(path, options.ink);
 }
 

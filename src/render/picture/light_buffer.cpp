@@ -11,9 +11,6 @@ namespace tuft::render {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Times the rays to a box: the floor's even grey shows waves of errors that the lattice of shifts
-// leaves. Only where the first are stopped would be cheaper, but darkens the edges of shadows.
-constexpr int kOnFloor = 4;
 
 /// What comes to `p` from direction `d` but for the boxes.
 Vec3f incoming(const Scene& scene, const LightCache& cache, const Vec3f& p, const Vec3f& d, const Vec2f& jitter,
@@ -86,7 +83,9 @@ Light sample_light(const Scene& scene, const LightCache& cache, const ViewHit& a
     for (std::size_t b = 0; b < samples.boxes.size(); ++b) {
         const Vec2f shift = lattice_shift(x, y, seed, b);
         Vec3f part{0};
-        const int n = (floor ? kOnFloor : 1) * samples.boxes[b];
+        // On the floor errors of the lattice of shifts show as waves. More rays only where the first are stopped would
+        // be cheaper, but darken the edges of shadows.
+        const int n = (floor ? samples.on_floor : 1) * samples.boxes[b];
         for (int i = 0; i < n; ++i) {
             const Vec2f s = wrap(sobol_point(static_cast<std::uint32_t>(i)) + shift);
             const BoxSample l = sample_box(scene.studio.boxes[b], start, at.normal, s);
@@ -116,7 +115,9 @@ Light sample_light(const Scene& scene, const LightCache& cache, const ViewHit& a
 }
 
 bool LightBuffer::find(float x, float y, const ViewHit& at, float pixel_size, Light& out) const {
-    const float px = x - 0.5f, py = y - 0.5f;
+    const auto per_square = static_cast<float>(step);
+    const float px = x / per_square - 0.5f, py = y / per_square - 0.5f;
+    pixel_size *= per_square;
     const int i0 = static_cast<int>(std::floor(px)), j0 = static_cast<int>(std::floor(py));
     Light sum;
     float total = 0;
@@ -150,30 +151,33 @@ bool LightBuffer::find(float x, float y, const ViewHit& at, float pixel_size, Li
 LightBuffer fill_light_buffer(const Scene& scene, const LightCache& cache, const Camera& camera,
                               const LightBufferOptions& options) {
     LightBuffer buffer;
-    buffer.width = camera.width;
-    buffer.height = camera.height;
-    const std::size_t n = static_cast<std::size_t>(camera.width) * camera.height;
+    buffer.step = options.step;
+    buffer.width = (camera.width + options.step - 1) / options.step;
+    buffer.height = (camera.height + options.step - 1) / options.step;
+    const auto width = static_cast<std::size_t>(buffer.width);
+    const std::size_t n = width * static_cast<std::size_t>(buffer.height);
     buffer.hits.resize(n);
     buffer.light.resize(n);
     std::vector<Vec2f> variance(n, Vec2f{0});
     constexpr int kBand = 32;  // rows between two reports
-    for (int top = 0; top < camera.height; top += kBand) {
-        report(options.progress, "light", static_cast<double>(top) / camera.height);
-        const int rows = std::min(kBand, camera.height - top);
-        parallel_for(static_cast<std::size_t>(rows) * camera.width, 256, [&](std::size_t begin, std::size_t end) {
+    for (int top = 0; top < buffer.height; top += kBand) {
+        report(options.progress, "light", static_cast<double>(top) / buffer.height);
+        const int rows = std::min(kBand, buffer.height - top);
+        parallel_for(static_cast<std::size_t>(rows) * width, 256, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
-                const std::size_t k = static_cast<std::size_t>(top) * camera.width + i;
-                const double x = static_cast<double>(k % camera.width) + 0.5;
-                const double y = static_cast<double>(k / camera.width) + 0.5;
+                const std::size_t k = static_cast<std::size_t>(top) * width + i;
+                const double x = options.step * (static_cast<double>(k % width) + 0.5);
+                const double y = options.step * (static_cast<double>(k / width) + 0.5);
                 ViewHit& s = buffer.hits[k];
                 s = trace_view_ray(scene, camera, Vec3f(ray_direction(camera, x, y)));
                 if (s.kind != HitKind::backdrop)
-                    buffer.light[k] = sample_light(
-                        scene, cache, s, options.samples,
-                        {static_cast<int>(k % camera.width), static_cast<int>(k / camera.width), options.seed});
+                    buffer.light[k] =
+                        sample_light(scene, cache, s, options.samples,
+                                     {static_cast<int>(k % width), static_cast<int>(k / width), options.seed});
             }
         });
     }
+    if (buffer.step > 1) remove_specks(buffer, camera);
     smooth_light(buffer, variance, camera);
     return buffer;
 }

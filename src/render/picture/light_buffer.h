@@ -34,6 +34,7 @@ struct Light {
 struct LightSamples {
     std::array<int, 3> boxes{8, 3, 3};
     int around = 12;
+    int on_floor = 4;  ///< times `boxes` on the floor, whose even grey shows most
 };
 LightSamples share_samples(int total);
 
@@ -47,25 +48,31 @@ struct PixelSeed {
 Light sample_light(const Scene& scene, const LightCache& cache, const ViewHit& at, const LightSamples& samples,
                    const PixelSeed& pixel);
 
-/// Per pixel, row-major from the top.
+/// Per pixel or per square of `step` × `step` pixels, at its middle; row-major from the top.
 struct LightBuffer {
     int width = 0, height = 0;
+    int step = 1;
     std::vector<ViewHit> hits;
     std::vector<Light> light;
 
-    /// Light for any sight seen through (x, y), from the pixels round it that show the same
-    /// surface. False when none does.
+    /// Light for any sight seen through (x, y) of the picture, from the squares round it that show the same
+    /// surface. `pixel_size`: of the picture, metres at the sight. False when none does.
     bool find(float x, float y, const ViewHit& at, float pixel_size, Light& light) const;
 };
 
 struct LightBufferOptions {
     LightSamples samples;
     std::uint64_t seed = 1;
+    int step = 1;
     ProgressFn progress;
 };
 
 LightBuffer fill_light_buffer(const Scene& scene, const LightCache& cache, const Camera& camera,
                               const LightBufferOptions& options);
+
+/// Limits both parts of the light of each square to the brightest of the squares round it that show the same surface: a
+/// single ray that met a bright spot leaves no speck.
+void remove_specks(LightBuffer& buffer, const Camera& camera);
 
 /// Edge-stopping à-trous smoothing (Dammertz et al. 2010; variance-guided as in Schied et
 /// al. 2017) of both parts of the light. `variance`: of the mean of each part, per pixel.

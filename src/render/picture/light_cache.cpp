@@ -47,13 +47,22 @@ Vec3f direct_light(const Scene& scene, const Vec3f& p, const Vec3f& n, const std
     return sum;
 }
 
-LightCache::LightCache(const Scene& scene) {
+LightCache::LightCache(const Scene& scene, Retain retain) {
     voxel_ = 2 * scene.studio.radius / kVoxels;
     origin_ = scene.studio.centre - Vec3f{1.5f * scene.studio.radius};
     floor_half_ = 3.2f * scene.studio.radius;
     floor_centre_ = {scene.studio.centre.x, scene.studio.centre.y};
     table_.assign(1 << 12, kNone);
     seed_patches(scene);
+    if (scene.studio.floor) seed_floor(scene);
+    link_nodes(scene);
+    solve(scene);
+    if (retain == Retain::links) return;
+    links_ = {};
+    dome_ = {};
+}
+
+void LightCache::relight(const Scene& scene) {
     if (scene.studio.floor) seed_floor(scene);
     solve(scene);
 }
@@ -127,12 +136,19 @@ void LightCache::seed_floor(const Scene& scene) {
     });
 }
 
-/// Direct and dome light of a patch into `own`, one link per ray that meets another surface.
-void LightCache::link_patch(const Scene& scene, const Patch& at, std::size_t index, Vec3f& own,
-                            std::vector<Link>& links) const {
+/// A patch, or a point of the floor's grid after them.
+LightCache::Patch LightCache::node(const Scene& scene, std::size_t index) const {
+    if (index < patches_.size()) return patches_[index];
+    const std::size_t k = index - patches_.size();
+    const Vec2f s{static_cast<float>(k % kFloorGrid), static_cast<float>(k / kFloorGrid)};
+    const Vec2f xy = floor_centre_ + floor_half_ * (2.0f * s / static_cast<float>(kFloorGrid - 1) - 1.0f);
+    return {{xy.x, xy.y, scene.studio.floor_z}, {0, 0, 1}, Vec3f{0}};
+}
+
+/// Returns the dome's light on a patch. `links` gets one for each ray that meets another surface.
+Vec3f LightCache::link_patch(const Scene& scene, const Patch& at, std::size_t index, std::vector<Link>& links) const {
     const Vec3f start = at.p + scene.offset * at.n;
     const Vec2f shift = hash_point(23, index);
-    own = direct_light(scene, start, at.n, {16, 8, 8}, shift);
     Vec3f dome{0};
     for (std::uint32_t i = 0; i < kRays; ++i) {
         const Vec3f d = cosine_direction(at.n, wrap(sobol_point(i) + shift));
@@ -156,38 +172,39 @@ void LightCache::link_patch(const Scene& scene, const Patch& at, std::size_t ind
             dome += dome_radiance(scene.studio, d);
         }
     }
-    own += dome / static_cast<float>(kRays);
+    return dome / static_cast<float>(kRays);
+}
+
+void LightCache::link_nodes(const Scene& scene) {
+    links_.resize(n_nodes());
+    dome_.resize(n_nodes());
+    dome_scale_ = scene.studio.scale;
+    parallel_for(n_nodes(), 32, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) dome_[i] = link_patch(scene, node(scene, i), i, links_[i]);
+    });
 }
 
 void LightCache::solve(const Scene& scene) {
-    const std::size_t n_object = patches_.size(), n = n_object + floor_.size();
+    const std::size_t n_object = patches_.size(), n = n_nodes();
     std::vector<Vec3f> own(n), light(n), next(n);
-    std::vector<std::vector<Link>> links(n);
     parallel_for(n, 32, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            Patch at;
-            if (i < n_object) {
-                at = patches_[i];
-            } else {
-                const std::size_t k = i - n_object;
-                const Vec2f s{static_cast<float>(k % kFloorGrid), static_cast<float>(k / kFloorGrid)};
-                const Vec2f xy = floor_centre_ + floor_half_ * (2.0f * s / static_cast<float>(kFloorGrid - 1) - 1.0f);
-                at.p = {xy.x, xy.y, scene.studio.floor_z};
-                at.n = {0, 0, 1};
-            }
-            link_patch(scene, at, i, own[i], links[i]);
+            const Patch at = node(scene, i);
+            own[i] = direct_light(scene, at.p + scene.offset * at.n, at.n, {16, 8, 8}, hash_point(23, i)) +
+                     scene.studio.scale / dome_scale_ * dome_[i];
         }
     });
     light = own;
     for (int bounce = 0; bounce < kBounces; ++bounce) {
         for (std::size_t i = 0; i < n; ++i) {
             Vec3f sum{0};
-            for (const Link& l : links[i])
+            for (const Link& l : links_[i])
                 sum += l.albedo * light[l.patch & kFloorLink ? n_object + (l.patch - kFloorLink) : l.patch];
             next[i] = own[i] + sum / static_cast<float>(kRays);
         }
         std::swap(light, next);
     }
+    mean_ = Vec3f{0};
     for (std::size_t i = 0; i < n_object; ++i) {
         patches_[i].light = light[i];
         mean_ += light[i] / static_cast<float>(n_object);

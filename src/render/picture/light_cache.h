@@ -30,8 +30,16 @@ Vec3f direct_light(const Scene& scene, const Vec3f& p, const Vec3f& n, const std
 
 class LightCache {
   public:
+    /// What stays of the work: nothing more than the solution, or what `relight` needs (16 bytes for each of some 60
+    /// links of a patch).
+    enum class Retain { solution, links };
+
     /// Solves it; deterministic for any thread count. Cost: about 1 s of one core.
-    explicit LightCache(const Scene& scene);
+    explicit LightCache(const Scene& scene, Retain retain = Retain::solution);
+
+    /// Solves it for the lights that `scene` has now. Surfaces and their colours stay those of the constructor, which
+    /// retained its links. The solution is that of a new cache up to rounding. Cost: a third.
+    void relight(const Scene& scene);
 
     /// Light on the object at p with normal n, interpolated between patches.
     Vec3f object_light(const Vec3f& p, const Vec3f& n) const;
@@ -60,7 +68,10 @@ class LightCache {
     void insert(const Vec3f& p, const Vec3f& n);
     void seed_patches(const Scene& scene);
     void seed_floor(const Scene& scene);
-    void link_patch(const Scene& scene, const Patch& at, std::size_t index, Vec3f& own, std::vector<Link>& links) const;
+    std::size_t n_nodes() const { return patches_.size() + floor_.size(); }
+    Patch node(const Scene& scene, std::size_t index) const;
+    Vec3f link_patch(const Scene& scene, const Patch& at, std::size_t index, std::vector<Link>& links) const;
+    void link_nodes(const Scene& scene);
     void solve(const Scene& scene);
     Vec3f read_floor(const std::vector<Vec3f>& grid, float x, float y) const;
 
@@ -73,6 +84,9 @@ class LightCache {
     float floor_half_ = 1;
     Vec2f floor_centre_{0};
     std::vector<Vec3f> floor_, open_floor_;  ///< light at the points of a square grid
+    std::vector<std::vector<Link>> links_;   ///< [n_nodes] of patches, then of the floor's points
+    std::vector<Vec3f> dome_;                ///< [n_nodes] light of the dome
+    float dome_scale_ = 1;                   ///< of the studio in which it was found
 };
 
 }  // namespace tuft::render

@@ -55,9 +55,12 @@ struct PictureOptions {
     Lights lights = Lights::studio;
     /// Radians the lights are turned about z, raking light about the camera's axis; they follow the camera.
     double light_azimuth = 0;
-    double exposure = 1;    ///< factor on the light
-    int edge_samples = 16;  ///< rays per pixel on edges, up to eight times as many on thin lights (a quarter elsewhere)
+    double exposure = 1;  ///< factor on the light
+    /// Rays per pixel on edges, up to eight times as many on thin lights. Elsewhere a quarter; below 8 that is the one
+    /// through the pixel's middle.
+    int edge_samples = 16;
     int light_samples = 28;  ///< rays per pixel towards lights and surroundings
+    int light_step = 1;      ///< light is sampled at each pixel so many apart along both sides, and interpolated; >= 1
     std::uint64_t seed = 1;
     ProgressFn progress;
 };

@@ -111,14 +111,18 @@ struct PictureSeries::State {
     LightBuffer buffer;
     Image image;
     std::vector<PixelCode> middles;
+    std::vector<Vec3f> middle_codes;  ///< the same, not rounded; empty unless `one_ray`
     std::vector<std::uint8_t> edges;
     PixelsOfTiles reads;
     bool drawn = false;
     std::size_t drawn_pixels = 0;
 
     std::size_t n_pixels() const { return middles.size(); }
+    /// Whether a pixel off the edges gets one ray: that through its middle, which finds the edges.
+    bool one_ray() const { return options.edge_samples < 8; }
     int x_of(std::size_t pixel) const { return static_cast<int>(pixel % static_cast<std::size_t>(camera.width)); }
     int y_of(std::size_t pixel) const { return static_cast<int>(pixel / static_cast<std::size_t>(camera.width)); }
+    void sample_light();
     bool is_edge(std::size_t pixel) const;
     std::vector<std::uint32_t> with_neighbours(std::span<const std::uint32_t> pixels) const;
     void find_edges(std::vector<std::uint32_t>& pixels);
@@ -126,6 +130,14 @@ struct PictureSeries::State {
     void for_pixels(std::span<const std::uint32_t> pixels, const char* phase, double from, double to, Fn&& fn);
     void redraw(const Shading& shading, std::vector<std::uint32_t> pixels);
 };
+
+void PictureSeries::State::sample_light() {
+    LightSamples samples = share_samples(options.light_samples);
+    if (options.light_step > 1) samples.on_floor = 1;
+    buffer = fill_light_buffer(
+        scene, *cache, camera,
+        {.samples = samples, .seed = options.seed, .step = options.light_step, .progress = options.progress});
+}
 
 /// Whether the pixel's middle differs from that of one of the pixels round it by some six codes.
 bool PictureSeries::State::is_edge(std::size_t pixel) const {
@@ -193,11 +205,16 @@ void PictureSeries::State::for_pixels(std::span<const std::uint32_t> pixels, con
 
 void PictureSeries::State::redraw(const Shading& shading, std::vector<std::uint32_t> pixels) {
     for_pixels(pixels, "picture", 0, 0.2, [&](std::uint32_t pixel, TileReads* read) {
-        middles[pixel] = shade_middle(shading, x_of(pixel), y_of(pixel), read);
+        const Vec3f code = shade_middle(shading, x_of(pixel), y_of(pixel), read);
+        for (int c = 0; c < 3; ++c)
+            middles[pixel][static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(255 * code[c]);
+        if (one_ray()) middle_codes[pixel] = code;
     });
     find_edges(pixels);
     for_pixels(pixels, "picture", 0.2, 1, [&](std::uint32_t pixel, TileReads* read) {
-        const Vec3f code = shade_pixel(shading, edges[pixel] != 0, x_of(pixel), y_of(pixel), read);
+        const bool edge = edges[pixel] != 0;
+        const Vec3f code =
+            one_ray() && !edge ? middle_codes[pixel] : shade_pixel(shading, edge, x_of(pixel), y_of(pixel), read);
         const PixelCode out = pixel_code(code, options.seed, pixel);
         std::copy(out.begin(), out.end(), image.rgb.begin() + 3 * static_cast<std::ptrdiff_t>(pixel));
     });
@@ -211,15 +228,25 @@ PictureSeries::PictureSeries(const mesh::TriangleMesh& mesh, const mesh::Surface
     : state_(std::make_unique<State>(mesh, query, lit, options)) {
     State& s = *state_;
     report(options.progress, "bounces", 0);
-    s.cache.emplace(s.scene);
-    s.buffer = fill_light_buffer(s.scene, *s.cache, s.camera,
-                                 {share_samples(options.light_samples), options.seed, options.progress});
+    s.cache.emplace(s.scene, length == Length::moving ? LightCache::Retain::links : LightCache::Retain::solution);
+    s.sample_light();
     const std::size_t n = static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
     s.image = {options.width, options.height, std::vector<std::uint8_t>(3 * n)};
     s.middles.resize(n);
     s.edges.assign(n, 0);
+    if (s.one_ray()) s.middle_codes.resize(n);
     const std::size_t tiles = (lit.maps.size + kMapTile - 1) / kMapTile;
     if (length == Length::many && lit.maps.height.empty()) s.reads.reset(tiles * tiles);
+}
+
+void PictureSeries::look_from(const View& view) {
+    State& s = *state_;
+    s.options.view = view;
+    s.camera = make_checked_camera(s.scene.mesh, s.options);
+    s.scene.studio = make_light(s.scene.mesh, s.camera, s.options);
+    s.cache->relight(s.scene);
+    s.sample_light();
+    s.drawn = false;
 }
 
 PictureSeries::~PictureSeries() = default;

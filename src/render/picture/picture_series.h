@@ -21,7 +21,9 @@ namespace tuft::render {
 /// far from `lit`.
 class PictureSeries {
   public:
-    enum class Length { one, many };  ///< `one` records no reads: half the time and memory of the first picture less
+    /// One picture, many from one camera, or many from a camera that moves. Only `many` records reads, which takes
+    /// half the time and memory of the first picture.
+    enum class Length { one, many, moving };
 
     /// Finds the light. `mesh`, `query`, and the maps of `lit` must outlive it. Throws as `render_picture` does. Cost:
     /// three quarters of a whole picture.
@@ -35,6 +37,11 @@ class PictureSeries {
     /// call everything is drawn, later the pixels that read one of `changed` (tiles of 16 × 16 texels of the colour
     /// map, row · tiles per side + column). With a height map all is drawn anew after any change.
     const Image& draw(const Appearance& shown, std::span<const std::uint32_t> changed = {});
+
+    /// Moves the camera, with which the lights turn; the next `draw` draws all anew. Light that surfaces throw onto
+    /// others stays that of the paint `lit`, and its paths are not traced again: half the cost of a new series where
+    /// `light_step` and few samples make its pixels cheap. The series must be `Length::moving`.
+    void look_from(const View& view);
 
     const Camera& camera() const;
     /// Pixels whose colour the last `draw` computed.

@@ -142,16 +142,12 @@ Vec3f shade_pixel(const Shading& f, bool on_edge, int x, int y, TileReads* reads
     return shown_codes(sum / static_cast<float>(n));
 }
 
-PixelCode shade_middle(const Shading& f, int x, int y, TileReads* reads) {
+Vec3f shade_middle(const Shading& f, int x, int y, TileReads* reads) {
     const std::uint64_t k =
         static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(f.camera.width) + static_cast<std::uint64_t>(x);
     const Vec3f c =
         shade(f, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, hash_bits(f.options.seed + 3, k), reads);
-    const Vec3f code = shown_codes({shoulder(c.x), shoulder(c.y), shoulder(c.z)});
-    PixelCode middle;
-    for (int channel = 0; channel < 3; ++channel)
-        middle[static_cast<std::size_t>(channel)] = static_cast<std::uint8_t>(255 * code[channel]);
-    return middle;
+    return shown_codes({shoulder(c.x), shoulder(c.y), shoulder(c.z)});
 }
 
 PixelCode pixel_code(const Vec3f& code, std::uint64_t seed, std::size_t pixel) {

@@ -27,8 +27,8 @@ using PixelCode = std::array<std::uint8_t, 3>;
 /// pixel beside it. It depends on nothing but the arguments and the texels of the tiles in `reads`.
 Vec3f shade_pixel(const Shading& shading, bool on_edge, int x, int y, TileReads* reads = nullptr);
 
-/// Returns the colour of the ray through the middle of pixel (x, y), rounded down. Likewise.
-PixelCode shade_middle(const Shading& shading, int x, int y, TileReads* reads = nullptr);
+/// Returns the colour of the ray through the middle of pixel (x, y) as sRGB code values in [0, 1]. Likewise.
+Vec3f shade_middle(const Shading& shading, int x, int y, TileReads* reads = nullptr);
 
 /// Rounds code values in [0, 1] with a dither that the pixel's number fixes.
 PixelCode pixel_code(const Vec3f& code, std::uint64_t seed, std::size_t pixel);

@@ -26,7 +26,7 @@ float likeness(const ViewHit& a, const ViewHit& b, float reach) {
 
 /// Mean and variance of each part over the 7 × 7 pixels of the same surface.
 void local_variance(const LightBuffer& in, const Camera& camera, std::vector<Vec2f>& variance) {
-    const float per_metre = static_cast<float>(2 * camera.tan_half_height / camera.height);
+    const float per_metre = static_cast<float>(2 * camera.tan_half_height / camera.height * in.step);
     parallel_for(in.hits.size(), 2048, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const ViewHit& s = in.hits[k];
@@ -53,12 +53,36 @@ void local_variance(const LightBuffer& in, const Camera& camera, std::vector<Vec
 
 }  // namespace
 
+void remove_specks(LightBuffer& buffer, const Camera& camera) {
+    const float per_metre = static_cast<float>(2 * camera.tan_half_height / camera.height * buffer.step);
+    std::vector<Light> out = buffer.light;
+    parallel_for(buffer.hits.size(), 2048, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const ViewHit& s = buffer.hits[k];
+            if (s.kind != HitKind::object) continue;
+            const int x = static_cast<int>(k % buffer.width), y = static_cast<int>(k / buffer.width);
+            const float reach = 2 * per_metre * glm::length(s.position - Vec3f(camera.eye));
+            Vec2f most{0};
+            for (int j = std::max(0, y - 1); j <= std::min(buffer.height - 1, y + 1); ++j)
+                for (int i = std::max(0, x - 1); i <= std::min(buffer.width - 1, x + 1); ++i) {
+                    const std::size_t q = static_cast<std::size_t>(j) * buffer.width + i;
+                    if (q == k || likeness(s, buffer.hits[q], reach) <= 0) continue;
+                    most = glm::max(most, Vec2f{luma(buffer.light[q].direct), luma(buffer.light[q].around)});
+                }
+            const Vec2f own{luma(out[k].direct), luma(out[k].around)};
+            if (most.x > 0 && own.x > most.x) out[k].direct *= most.x / own.x;
+            if (most.y > 0 && own.y > most.y) out[k].around *= most.y / own.y;
+        }
+    });
+    buffer.light = std::move(out);
+}
+
 void smooth_light(LightBuffer& buffer, std::vector<Vec2f>& variance, const Camera& camera) {
     constexpr float kernel[3] = {0.375f, 0.25f, 0.0625f};
     constexpr int kPasses = 4;
     constexpr float kStop = 2.5f;  // standard deviations of noise that still count as the same light
     local_variance(buffer, camera, variance);
-    const float per_metre = static_cast<float>(2 * camera.tan_half_height / camera.height);
+    const float per_metre = static_cast<float>(2 * camera.tan_half_height / camera.height * buffer.step);
     std::vector<Light> out(buffer.light.size());
     std::vector<Vec2f> out_variance(variance.size());
     for (int pass = 0; pass < kPasses; ++pass) {

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "render/picture/picture.h"
+#include "stroke/document/document.h"
+
+/// \file
+/// A painted model as product pictures show it. Called by the commands and the studio. Any thread that has the
+/// document.
+namespace tuft::film {
+
+/// Surface of a model as a picture shows it, with its maps.
+struct PictureLook {
+    render::Appearance appearance;  ///< its maps are those below
+    ink::AtlasMap<float> colour, height;
+
+    /// Sets the maps of `appearance` after they were made or replaced.
+    void point_to_maps(const stroke::Model& model);
+};
+/// Returns what is painted on a model, or without `painting` the bare one, with a height map where `raking`.
+/// `material`: of the bare surface; empty: the painting's, else porcelain.
+PictureLook make_look(const stroke::Model& model, const stroke::Document* painting, const std::string& material,
+                      bool raking);
+
+}  // namespace tuft::film
