@@ -44,7 +44,7 @@ io/export io/project io/strokes
 io/sheet
 writer/glyphs
 writer/gesture
-writer/fit writer/layout
+writer/copy writer/fit writer/layout
 variants
 cli app/input app/text
 app/view
