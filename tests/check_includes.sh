@@ -45,7 +45,7 @@ io/sheet
 film
 writer/glyphs
 writer/gesture
-writer/fit writer/layout
+writer/copy writer/fit writer/layout
 variants
 cli app/input app/text
 app/view

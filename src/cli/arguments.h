@@ -283,6 +283,9 @@ struct DeviceWork {
 struct Write : Paint {
     std::string text;
     std::filesystem::path glyphs;          ///< source of strokes before the bundled ones, or empty
+    std::filesystem::path like;            ///< picture of a character to copy, or empty
+    std::string order;                     ///< of the copy's strokes (`writer::parse_order`); empty: by rules
+    std::filesystem::path numbered;        ///< drawing of the copy's pieces to write, .svg, or empty
     std::string style = "kaishu";          ///< name or .toml
     bool fit = false;                      ///< to the source's outlines
     double size_mm = 0;                    ///< side of a character's square; 0: as the place allows

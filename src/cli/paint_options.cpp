@@ -205,9 +205,17 @@ constexpr double kMostPicture = 16384;  // pixels along a side
 }
 
 void add_write_options(CLI::App* w, Write& write) {
-    w->add_option("--text", write.text, "what is written; \\n begins a line or a column")
-        ->required()
-        ->type_name("TEXT");
+    w->add_option("--text", write.text, "what is written; \\n begins a line or a column")->type_name("TEXT");
+    auto* like =
+        w->add_option("--like", write.like,
+                      "copy the character of a picture instead: a photo, a scan or a rubbing (--text: its name)");
+    w->add_option("--order", write.order,
+                  "strokes of the copy in the order of writing, as pieces of its centre line: \"1+2 -4 3\" joins 1 and "
+                  "2, and writes 4 from its end (default: by rules, printed)")
+        ->needs(like)
+        ->type_name("LIST");
+    w->add_option("--numbered", write.numbered, "write a drawing of the pieces of the copy, numbered: .svg")
+        ->needs(like);
     w->add_option("--glyphs", write.glyphs,
                   "where the characters' strokes come from before the bundled ones: a folder of KanjiVG (SVG), of "
                   "hanzi-writer-data or Make Me a Hanzi (JSON), a single-line SVG font, or a font file")

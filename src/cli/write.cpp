@@ -8,12 +8,16 @@
 #include "cli/model_path.h"
 #include "cli/paint.h"
 #include "cli/steps.h"
+#include "core/system/files.h"
 #include "core/text/units.h"
+#include "io/image/image.h"
 #include "io/strokes/svg.h"
 #include "stroke/drawing/drawing.h"
 #include "stroke/drawing/free_area.h"
 #include "stroke/journal/entries.h"
 #include "stroke/placement/placement.h"
+#include "writer/copy/copied_glyph.h"
+#include "writer/copy/photo.h"
 #include "writer/fit/writer.h"
 #include "writer/glyphs/glyph_source.h"
 #include "writer/layout/text_layout.h"
@@ -31,6 +35,7 @@ struct Text {
     std::vector<std::vector<writer::Glyph>> lines;
     writer::LayoutOptions layout;
     std::string group;
+    std::string note;  ///< for the user
 };
 
 std::string group_of(std::string text) {
@@ -39,14 +44,41 @@ std::string group_of(std::string text) {
     return stroke::group_name(text);
 }
 
-Text read_text(const Write& a) {
-    Text text{.style = writer::load_style(a.style), .group = group_of(a.text)};
+/// The character of a picture.
+writer::Glyph copy_character(const Write& a, std::string& note) {
+    const std::u32string name = writer::characters_of(a.text);
+    if (name.size() > 1) throw UsageError("--like copies one character: --text is its name");
+    const writer::Cells ink = writer::ink_of(io::read_image8(a.like), a.like.string());
+    const writer::Skeleton skeleton = writer::skeleton_of(ink);
+    const writer::StrokeOrder order =
+        a.order.empty() ? writer::order_by_rules(skeleton) : writer::parse_order(a.order, skeleton.pieces.size());
+    if (!a.numbered.empty()) {
+        if (a.numbered.extension() != ".svg") throw UsageError("--numbered writes a drawing: .svg");
+        const std::string svg = writer::numbered_svg(ink, skeleton, order);
+        write_file(a.numbered, svg.data(), svg.size());
+    }
+    note = fmt::format("{} strokes of {} pieces; --order \"{}\"", order.size(), skeleton.pieces.size(),
+                       writer::order_text(order));
+    return writer::copied_glyph(ink, skeleton, order, name.empty() ? U'\u25A1' : name[0]);
+}
+
+std::vector<std::vector<writer::Glyph>> read_glyphs(const Write& a) {
     std::vector<std::unique_ptr<writer::GlyphSource>> sources;
     if (!a.glyphs.empty()) sources.push_back(writer::open_glyphs(a.glyphs));
     sources.push_back(writer::open_glyphs(writer::bundled_glyphs()));
     std::vector<writer::GlyphSource*> order;
     for (const auto& source : sources) order.push_back(source.get());
-    text.lines = writer::glyphs_of(writer::lines_of(a.text), order);
+    return writer::glyphs_of(writer::lines_of(a.text), order);
+}
+
+Text read_text(const Write& a) {
+    if (a.text.empty() && a.like.empty()) throw UsageError("there is nothing to write: --text or --like is missing");
+    Text text{.style = writer::load_style(a.style),
+              .group = group_of(a.text.empty() ? a.like.stem().string() : a.text)};
+    if (a.like.empty())
+        text.lines = read_glyphs(a);
+    else
+        text.lines = {{copy_character(a, text.note)}};
     const bool inked = std::any_of(text.lines.begin(), text.lines.end(), [](const auto& line) {
         return std::any_of(line.begin(), line.end(),
                            [](const writer::Glyph& g) { return !g.strokes.empty() || !g.area.empty(); });
@@ -121,7 +153,7 @@ writer::Writer make_writer(const Text& text, const Write& a, double side) {
     return writer::Writer({.style = text.style,
                            .brush = a.brush,
                            .side = side,
-                           .fit = a.fit,
+                           .fit = a.fit || !a.like.empty(),
                            .cache = DiskCache(a.surface.no_cache ? "" : cache_folder("writer"))});
 }
 
@@ -183,7 +215,11 @@ int run(const Write& a) {
     const Text text = read_text(a);
     const bool along =
         text.layout.direction == writer::Direction::rim || text.layout.direction == writer::Direction::curve;
-    return paint(a, {.load = [](Console&) { return std::vector<stroke::JournalEntry>{}; },
+    return paint(a, {.load =
+                         [&](Console& console) {
+                             if (!text.note.empty()) console.note(text.note);
+                             return std::vector<stroke::JournalEntry>{};
+                         },
                      .place =
                          [&](std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model, Console& console) {
                              return along ? write_along(strokes, model, text, a, console)

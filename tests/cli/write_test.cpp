@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "program.h"
@@ -28,6 +29,24 @@ TEST_F(Write, TheStrokesOfATextAreOneGroupAndReplayToTheBit) {
     const Ran replayed = tuft("replay " + path("a.tuft") + " --json --quiet --project " + path("b.tuft"));
     ASSERT_EQ(replayed.status, 0) << replayed.err;
     EXPECT_EQ(json::parse(replayed.out).at("canvas_hash"), j.at("canvas_hash"));
+}
+
+TEST_F(Write, ACharacterIsCopiedFromAPicture) {
+    ASSERT_EQ(written("--text 十 --size 150 --project " + path("a.tuft")).status, 0);
+    ASSERT_EQ(tuft("export " + path("a.tuft") + " -o " + path("a.png") + " --map base-colour --quiet").status, 0);
+    const std::string like = "--like " + path("a.png") + " --size 100 ";
+    const Ran ran = written(like + "--text 十 --numbered " + path("n.svg") + " --project " + path("b.tuft"));
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_EQ(json::parse(ran.out).at("strokes").size(), 2u);
+    EXPECT_TRUE(std::filesystem::exists(path("n.svg")));
+    const Ran one = written(like + "--order -1");
+    ASSERT_EQ(one.status, 0) << one.err;
+    EXPECT_EQ(json::parse(one.out).at("strokes").size(), 1u);
+    for (const std::string& options : {like + "--order 99", like + "--text 永永", "--like " + path("none.png")}) {
+        const Ran wrong = written(options);
+        EXPECT_GT(wrong.status, 0) << options;
+        EXPECT_EQ(wrong.error_lines(), 1) << wrong.err;
+    }
 }
 
 TEST_F(Write, MissingCharactersAndWrongOptionsAreOneLine) {

@@ -65,15 +65,32 @@ TEST(KanjiSvg, DeepAndEmptyOnesAreRefused) {
 }
 
 TEST(LineFont, OpenPathsAreStrokesInUnitsOfTheEm) {
-    const std::vector<Glyph> font = parse_line_font(
-        R"(<svg><defs><font horiz-adv-x="500"><font-face units-per-em="2048" descent="-512"/>)"
-        R"(<glyph unicode="T" d="M0 1400 L1000 1400 M500 1400 L500 0"/><glyph unicode="ab" d="M0 0 L1 1"/></font></defs></svg>)",
-        "font.svg");
+    const std::vector<Glyph> font =
+        parse_line_font(
+            R"(<svg><defs><font horiz-adv-x="500"><font-face units-per-em="2048" descent="-512"/>)"
+            R"(<glyph unicode="T" d="M0 1400 L1000 1400 M500 1400 L500 0"/><glyph unicode="ab" d="M0 0 L1 1"/></font></defs></svg>)",
+            "font.svg")
+            .glyphs;
     ASSERT_EQ(font.size(), 1u);  // a ligature is no character
     ASSERT_EQ(font[0].strokes.size(), 2u);
     EXPECT_TRUE(font[0].single_line);
     EXPECT_EQ(font[0].advance, 250);
     EXPECT_EQ(font[0].strokes[1].median.back(), Vec2(250, 256));
+}
+
+TEST(LineFont, KerningIsTakenFromTheAdvanceOfTheFirst) {
+    const auto font = parse_line_font(
+        R"(<svg><defs><font horiz-adv-x="500"><font-face units-per-em="2048"/><glyph unicode="A" d="M0 0 L9 0"/>)"
+        R"(<hkern u1="A,B" u2="V,W" k="100"/></font></defs></svg>)",
+        "font.svg");
+    EXPECT_EQ(font.kerning.size(), 4u);
+    EXPECT_EQ(font.kerning.at({U'B', U'V'}), 50);
+    const auto bundled = open_glyphs(bundled_glyphs());
+    const double k = bundled->kerning(U'A', U'V');
+    EXPECT_GT(k, 20);
+    const auto line = bundled->find_line(U"AVA");
+    EXPECT_EQ(line[0]->advance, bundled->find(U'A')->advance - k);
+    EXPECT_EQ(line[2]->advance, bundled->find(U'A')->advance);
 }
 
 TEST(Bundled, AtLeastFortyCharactersAndAnAlphabetAreThere) {

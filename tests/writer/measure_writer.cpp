@@ -1,8 +1,10 @@
 // Measures the writer on characters of a folder of hanzi-writer-data:
 //   measure_writer sides DATA CHARACTERS                     features and measured sides of each stroke, a line each
 //   measure_writer score DATA CHARACTERS [--fit 1] [--brush NAME] [--side MM] [--tries N] [--step UNITS] [--verbose 1]
-// CHARACTERS is a file. `score` draws the writer's strokes on a plane, without texels, and compares their union with
-// the outlines in cells of 2 units; score_painted.py compares what `tuft write` painted.
+//                                                          [--weak FOLDER]
+// CHARACTERS is a file. --weak writes a picture (.ppm) of each stroke below 0.92: wanted grey, missing red, extra blue,
+// the path of the brush green. `score` draws the writer's strokes on a plane, without texels, and compares their union
+// with the outlines in cells of 2 units; score_painted.py compares what `tuft write` painted.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,6 +50,28 @@ Cells square() {
     Cells cells{.lo = Vec2(-100), .cell = 2, .width = 612, .height = 612};
     cells.inside.assign(std::size_t(cells.width) * cells.height, 0);
     return cells;
+}
+
+/// Writes the difference of a stroke's ink from its outline, and the path of the brush.
+void write_weak(const std::string& path, const Cells& wanted, const Cells& drawn, const stroke::StrokeSamples& trace,
+                double unit) {
+    std::string ppm = fmt::format("P6\n{} {}\n255\n", wanted.width, wanted.height);
+    const std::size_t head = ppm.size();
+    for (int j = wanted.height - 1; j >= 0; --j)
+        for (int i = 0; i < wanted.width; ++i) {
+            const bool a = wanted.at(i, j), b = drawn.at(i, j);
+            for (const int v :
+                 {a ? 170 + 60 * !b : 255 - 175 * b, a ? 170 - 110 * !b : 255 - 135 * b, a ? 170 - 110 * !b : 255})
+                ppm.push_back(static_cast<char>(v));
+        }
+    for (const stroke::StrokeSample& s : trace.samples) {
+        const Vec2 p = (Vec2(s.position.x, -s.position.y) / unit - wanted.lo) / wanted.cell;
+        const int i = static_cast<int>(p.x), j = wanted.height - 1 - static_cast<int>(p.y);
+        if (i < 0 || j < 0 || i >= wanted.width || j >= wanted.height) continue;
+        const std::size_t at = head + 3 * (std::size_t(j) * wanted.width + i);
+        ppm[at] = 0, ppm[at + 1] = static_cast<char>(140), ppm[at + 2] = 0;
+    }
+    write_file(path, ppm.data(), ppm.size());
 }
 
 struct Sum {
@@ -100,15 +124,20 @@ int main(int argc, char** argv) {
             Cells own = square();
             fill(own, glyph.strokes[s].outline);
             Overlap overlap;
+            Cells ink_cells = square();
             for (int j = 0; j < own.height; ++j)
                 for (int i = 0; i < own.width; ++i) {
                     const bool there = ink.at(own.centre(i, j) * hand.unit) > 0.5;
                     if (there) drawn.inside[std::size_t(j) * drawn.width + i] = 1;
+                    if (there) ink_cells.inside[std::size_t(j) * drawn.width + i] = 1;
                     overlap.add(own.at(i, j), there);
                 }
             Sum& sum = classes[make_stroke_line(glyph.strokes[s].median).stroke_class()];
             sum.iou += overlap.iou(), ++sum.n, ++n_strokes;
             if (options.contains("verbose")) fmt::print("  {} {:.3f}\n", written[s].label, overlap.iou());
+            if (options.contains("weak") && overlap.iou() < 0.92)
+                write_weak(fmt::format("{}/{:.3f}-{}-{}.ppm", options["weak"], overlap.iou(), utf8_of(code), s + 1),
+                           own, ink_cells, written[s].trace, hand.unit);
         }
         Overlap whole;
         for (std::size_t i = 0; i < truth.inside.size(); ++i) whole.add(truth.inside[i], drawn.inside[i]);

@@ -186,28 +186,38 @@ stroke::PlaneInk draw_on_plane(std::span<const Station> stations, const BrushHan
                              cell * hand.unit);
 }
 
-FitResult fit_stations(std::vector<Station> stations, const FitTarget& target, const BrushHand& hand, const Pace& pace,
-                       const FitOptions& options) {
-    const std::vector<Station> first = stations;
-    const std::vector<double> soft = softness_of(first);
-    FitResult best{.stations = stations};
-    const auto try_with = [&](int tries, double step) {
-        best.iou = 0;
-        stations = best.stations;
+FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& target, const BrushHand& hand,
+                       const Pace& pace, const FitOptions& options, const std::vector<Station>& other) {
+    const auto fit_from = [&](const std::vector<Station>& first, const std::vector<Station>& begin, int tries,
+                              double step) {
+        const std::vector<double> soft = softness_of(first);
+        FitResult best{.stations = begin};
+        std::vector<Station> next = begin;
         for (int t = 0, idle = 0; t < tries && idle < options.idle; ++t) {
             check_interrupt();
-            const stroke::StrokeSamples trace = samples_of(stations, hand, pace);
+            const stroke::StrokeSamples trace = samples_of(next, hand, pace);
             const stroke::PlaneInk ink =
                 stroke::plane_ink(trace, hand.preset, hand.hold, step * hand.unit, target.wanted.cell * hand.unit);
-            const Errors errors = errors_of(stations, target, ink, trace, hand.unit);
+            const Errors errors = errors_of(next, target, ink, trace, hand.unit);
             idle = errors.iou > best.iou + 1e-4 ? 0 : idle + 1;
-            if (errors.iou > best.iou) best.iou = errors.iou, best.stations = stations;
+            if (errors.iou > best.iou) best.iou = errors.iou, best.stations = next;
             ++best.tries;
-            correct(stations, first, soft, errors);
+            correct(next, first, soft, errors);
         }
+        return best;
     };
-    try_with(options.tries, options.step);
-    if (options.fine_tries > 0) try_with(options.fine_tries, options.fine_step);
+    const std::vector<Station>* first = &stations;
+    FitResult best = fit_from(stations, stations, options.tries, options.step);
+    if (best.iou < options.weak && !other.empty()) {
+        FitResult again = fit_from(other, other, options.tries, options.step);
+        again.tries += best.tries;
+        if (again.iou > best.iou) best = std::move(again), first = &other;
+    }
+    if (options.fine_tries > 0) {
+        const int before = best.tries;
+        best = fit_from(*first, best.stations, options.fine_tries, options.fine_step);
+        best.tries += before;
+    }
     return best;
 }
 

@@ -22,6 +22,7 @@ struct FitOptions {
     double step = 5;         ///< units between poses
     int fine_tries = 3;      ///< drawings after those, from the best of them on
     double fine_step = 1.5;  ///< units; the ink of a tuft depends on the step, by .005 of the overlap from 5 to 1
+    double weak = 0.95;      ///< overlap below which another begin is tried
     int idle = 4;            ///< tries without a gain after which it stops
 };
 
@@ -38,9 +39,10 @@ struct FitResult {
 /// than 60 units along the path, covered first lifts that one; cells beyond an end change the length. Smoothed over two
 /// stations, the path moves by 0.6 · ½ (left − right) and the half width grows by 0.5 · ½ (left + right) less the kick.
 /// Half widths stay below 5 units + the distance to the nearer tip. Returns the best try; deterministic. Cost: 0.1 ms
-/// per pose.
-FitResult fit_stations(std::vector<Station> stations, const FitTarget& target, const BrushHand& hand, const Pace& pace,
-                       const FitOptions& options = {});
+/// per pose. Where the best try overlaps by less than `options.weak`, it begins again from `other`, if that is not
+/// empty, and the better of both goes on to the fine tries.
+FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& target, const BrushHand& hand,
+                       const Pace& pace, const FitOptions& options = {}, const std::vector<Station>& other = {});
 
 /// Returns the ink of stations on a plane, in cells of `cell` units.
 stroke::PlaneInk draw_on_plane(std::span<const Station> stations, const BrushHand& hand, const Pace& pace, double step,

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kMargin = 80;                 // units of cells around a stroke
 constexpr float kUnder = 0.25f;                // weight of an error under another stroke
-constexpr std::uint64_t kVersion = 6;          // of the fit
+constexpr std::uint64_t kVersion = 7;          // of the fit
 constexpr std::size_t kMostStations = 20'000;  // of a stroke
 
 double median_width(const stroke::LineWidths& widths, double unit) {
@@ -48,7 +48,7 @@ Vec2 slanted(const Vec2& p, double slant) {
 
 /// A stroke before its fit.
 struct Writer::Job {
-    std::vector<Station> stations;
+    std::vector<Station> stations, other;  // the path, and another begin of the fit
     FitTarget target;
     bool fit = true;
     std::uint64_t key = 0;
@@ -76,7 +76,8 @@ Writer::Job Writer::job_of(const Glyph& glyph, std::size_t stroke) const {
     const GlyphStroke& own = glyph.strokes[stroke];
     if (glyph.single_line || style.kind != HandKind::brush) {
         job.fit = false;
-        for (const Vec2& p : own.median) job.stations.push_back({slanted(p, style.slant), style.half_width});
+        const std::vector<Vec2> line = glyph.single_line ? curve_through(own.median) : own.median;
+        for (const Vec2& p : line) job.stations.push_back({slanted(p, style.slant), style.half_width});
         job.stations = resample_stations(job.stations, kStationsApart);
         return job;
     }
@@ -101,7 +102,8 @@ Writer::Job Writer::job_of(const Glyph& glyph, std::size_t stroke) const {
         if (k != stroke) add(others, k);
     for (const std::uint8_t under : others.inside) job.target.weights.push_back(under ? kUnder : 1.0f);
     job.stations = make_stations(line, sides, job.target.wanted);
-    job.key = hash_of(job.stations, kVersion);
+    if (line.segments.size() > 1) job.other = make_stations(line, sides, job.target.wanted, false);
+    job.key = hash_of(job.other, hash_of(job.stations, kVersion));
     job.key = hash_span(std::span<const std::uint8_t>(job.target.wanted.inside), job.key);
     job.key = hash_span(std::span<const float>(job.target.weights), job.key);
     return job;
@@ -123,7 +125,7 @@ Writer::Fitted Writer::fit_stroke(const Glyph& glyph, std::size_t stroke, const 
     if (std::optional<std::vector<Station>> stored = cached(key)) return {std::move(*stored), key, false};
     Fitted made{{}, key, true};
     made.stations =
-        fit_stations(std::move(job.stations), job.target, with, at, {.tries = options_.style.tries}).stations;
+        fit_stations(job.stations, job.target, with, at, {.tries = options_.style.tries}, job.other).stations;
     store(key, made.stations);
     return made;
 }

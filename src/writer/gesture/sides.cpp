@@ -16,6 +16,9 @@ constexpr double kWidest = 1.25, kWider = 10;
 constexpr double kLeastEnd = 5;       // units of half width of an end
 constexpr std::size_t kMostThin = 2;  // stations taken off an end
 constexpr double kTangent = 12;       // units before and after, of the direction at a knot
+constexpr double kArm = 36;           // units from a corner at which the width of its arms is taken
+constexpr double kCornerReach = 32;   // units along the path that a corner is moved with
+constexpr double kMostPush = 45;      // units
 
 Vec2 turned(const Vec2& v, double angle) {
     return {std::cos(angle) * v.x - std::sin(angle) * v.y, std::sin(angle) * v.x + std::cos(angle) * v.y};
@@ -107,6 +110,34 @@ void smooth(std::vector<Station>& s, int passes) {
     }
 }
 
+/// Moves the path out at corners, so far that ink as wide as that of both arms reaches the outer edge. A centre line
+/// cuts the corner, and the width at its bisector would fill the angle with a ball.
+void reach_corners(std::vector<Station>& path, const StrokeLine& line, const StrokeSides& sides) {
+    const double step = line.length() / static_cast<double>(path.size() - 1);
+    const std::vector<Station> before = path;
+    for (std::size_t s = 0; s + 1 < line.segments.size(); ++s) {
+        const LineSegment &in = line.segments[s], &on = line.segments[s + 1];
+        const double at = line.along[in.last];
+        const Vec2 u = line.direction(std::max(at - kArm, 0.0)), v = line.direction(std::min(at + kArm, line.length()));
+        const bool to_left = u.x * v.y - u.y * v.x > 0;
+        const Vec2 side = sides_at(line, sides, at),
+                   outward = (to_left ? -1.0 : 1.0) * left_of(line.direction(at, kTangent));
+        const auto half_at = [&](double where) {
+            return before[static_cast<std::size_t>(std::clamp(where / step, 0.0, static_cast<double>(path.size() - 1)))]
+                .half;
+        };
+        const double half =
+            0.5 * (half_at(at - std::min(kArm, 0.5 * in.length)) + half_at(at + std::min(kArm, 0.5 * on.length)));
+        const auto corner = static_cast<std::size_t>(std::lround(at / step));
+        const double there = glm::dot(before[corner].centre - line.at(at), outward);
+        const double push = std::clamp((to_left ? side.y : side.x) - half - there, 0.0, kMostPush);
+        for (std::size_t i = 0; i < path.size(); ++i) {
+            const double weight = 1 - std::abs(static_cast<double>(i) * step - at) / kCornerReach;
+            if (weight > 0) path[i].centre += weight * push * outward;
+        }
+    }
+}
+
 }  // namespace
 
 StrokeSides measure_sides(const StrokeLine& line, std::span<const Ring> outline) {
@@ -176,7 +207,7 @@ std::vector<Station> resample_stations(std::span<const Station> stations, double
     return out;
 }
 
-std::vector<Station> make_stations(const StrokeLine& line, const StrokeSides& sides, const Cells& area) {
+std::vector<Station> make_stations(const StrokeLine& line, const StrokeSides& sides, const Cells& area, bool corners) {
     std::vector<Station> path;
     const double cap = kWidest * median_half(sides) + kWider;
     const auto n = static_cast<int>(std::max(2.0, std::round(line.length() / kStationsApart)));
@@ -187,6 +218,7 @@ std::vector<Station> make_stations(const StrokeLine& line, const StrokeSides& si
         path.push_back({line.at(at) + 0.5 * (side.x - side.y) * normal, 0.5 * (side.x + side.y)});
     }
     smooth(path, 4);
+    if (corners) reach_corners(path, line, sides);
     const auto continue_by = [](const Station& end, const Station& inner, double length) {
         const Vec2 d = end.centre - inner.centre;
         const double size = glm::length(d);

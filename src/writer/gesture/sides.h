@@ -42,8 +42,10 @@ struct Station {
 
 /// Returns the path of a brush through an area: the middle between the sides, smoothed, continued along the end
 /// directions by the middle rays of the fans, in stations `kStationsApart` apart. The half width is that of the sides,
-/// at most the clearance of the place within `area`.
-std::vector<Station> make_stations(const StrokeLine& line, const StrokeSides& sides, const Cells& area);
+/// at most the clearance of the place within `area`. With `corners`, the path is moved out at corners as far as ink as
+/// wide as both arms of the corner reaches the outer edge.
+std::vector<Station> make_stations(const StrokeLine& line, const StrokeSides& sides, const Cells& area,
+                                   bool corners = true);
 inline constexpr double kStationsApart = 8;  ///< units
 
 /// Returns stations evenly about `apart` units apart, linear between the given ones.

@@ -10,8 +10,9 @@
 namespace tuft::writer {
 namespace {
 
-constexpr double kReach = 28, kApartCorners = 36, kNoCorner = 20;  // units
-constexpr double kCorner = 0.75;                                   // radians
+constexpr double kApartCorners = 8, kNoCorner = 20;  // units
+constexpr double kCorner = 0.75;                     // radians
+constexpr double kPolylineCorner = 40 * kDegree;     // turn at a point of a polyline
 
 struct CodeRange {
     char code;
@@ -44,12 +45,12 @@ std::vector<Vec2> resampled(std::span<const Vec2> line, double apart) {
     return out;
 }
 
-std::vector<std::size_t> corners_of(const StrokeLine& line) {
+std::vector<std::size_t> corners_of(const StrokeLine& line, double corner_reach) {
     const std::vector<Vec2>& p = line.points;
     const double step = line.length() / static_cast<double>(p.size() - 1);
     if (!(step > 0)) return {};
     const auto points = [&](double units) { return static_cast<std::size_t>(std::max(1.0, std::round(units / step))); };
-    const std::size_t reach = points(kReach), apart = points(kApartCorners), n = p.size();
+    const std::size_t reach = points(corner_reach), apart = points(corner_reach + kApartCorners), n = p.size();
     std::vector<double> turn(n, 0);
     for (std::size_t i = 1; i + 1 < n; ++i) {
         const std::size_t a = i - std::min(i, reach), b = std::min(n - 1, i + reach);
@@ -82,6 +83,38 @@ LineSegment segment_of(const StrokeLine& line, std::size_t first, std::size_t la
 }
 
 }  // namespace
+
+std::vector<Vec2> curve_through(std::span<const Vec2> line) {
+    std::vector<Vec2> p;
+    for (const Vec2& q : line)
+        if (p.empty() || glm::distance(p.back(), q) > 1e-6) p.push_back(q);
+    if (p.size() < 3) return p;
+    const std::size_t n = p.size();
+    std::vector<Vec2> tangent(n, Vec2(0));  // unit; 0: a corner or an end
+    for (std::size_t i = 1; i + 1 < n; ++i) {
+        const Vec2 a = p[i] - p[i - 1], b = p[i + 1] - p[i];
+        if (std::abs(angle_between(a, b)) > kPolylineCorner) continue;
+        const double la = glm::length(a), lb = glm::length(b);
+        tangent[i] = glm::normalize(lb / la * a + la / lb * b);
+    }
+    std::vector<Vec2> out{p.front()};
+    for (std::size_t i = 0; i + 1 < n; ++i) {
+        const Vec2 chord = p[i + 1] - p[i];
+        const double length = glm::length(chord);
+        const Vec2 u = chord / length;
+        Vec2 from = tangent[i], to = tangent[i + 1];
+        // The other end of an arc through a free end: the mirror of its tangent about the chord.
+        if (from == Vec2(0)) from = to == Vec2(0) ? u : 2 * glm::dot(u, to) * u - to;
+        if (to == Vec2(0)) to = 2 * glm::dot(u, from) * u - from;
+        const int pieces = std::max(1, static_cast<int>(std::ceil(length / StrokeLine::kApart)));
+        for (int k = 1; k <= pieces; ++k) {
+            const double t = static_cast<double>(k) / pieces, s = 1 - t;
+            out.push_back(s * s * (1 + 2 * t) * p[i] + t * t * (3 - 2 * t) * p[i + 1] +
+                          length * (s * s * t * from - s * t * t * to));
+        }
+    }
+    return out;
+}
 
 char segment_code(double direction) {
     double degrees = std::remainder(direction / kDegree, 360.0);
@@ -116,7 +149,7 @@ Vec2 StrokeLine::direction(double length, double reach) const {
     return size > 1e-9 ? d / size : Vec2(1, 0);
 }
 
-StrokeLine make_stroke_line(std::span<const Vec2> median) {
+StrokeLine make_stroke_line(std::span<const Vec2> median, double reach) {
     StrokeLine line;
     line.points = resampled(median, StrokeLine::kApart);
     for (int pass = 0; pass < 3; ++pass) {
@@ -127,7 +160,7 @@ StrokeLine make_stroke_line(std::span<const Vec2> median) {
     for (std::size_t i = 1; i < line.points.size(); ++i)
         line.along.push_back(line.along.back() + glm::distance(line.points[i], line.points[i - 1]));
     std::size_t first = 0;
-    for (const std::size_t corner : corners_of(line)) {
+    for (const std::size_t corner : corners_of(line, reach)) {
         line.segments.push_back(segment_of(line, first, corner));
         first = corner;
     }

@@ -38,8 +38,13 @@ struct StrokeLine {
 
 /// Resamples a centre line to 4 units, smooths it three times by (¼ ½ ¼), ends fixed, and splits it at corners: local
 /// maxima within ±36 units of the angle between the line 28 units before and after, above 0.75 rad, more than 20 units
-/// from the ends. Precondition: at least two points.
-StrokeLine make_stroke_line(std::span<const Vec2> median);
+/// from the ends. `reach` replaces the 28 units, and the 36 by as many more. Precondition: at least two points.
+StrokeLine make_stroke_line(std::span<const Vec2> median, double reach = 28);
+
+/// Returns a smooth curve through the points of a polyline, points at most `kApart` units apart: cubic Hermite pieces,
+/// with tangents of the circle through three neighbours. Turns above 40° stay corners; straight pieces beside a
+/// corner stay straight.
+std::vector<Vec2> curve_through(std::span<const Vec2> line);
 
 /// Returns the code of a direction in radians, y up, by degrees: H (橫) −24…20, T (提) 20…80, U 80…150, L 150…192,
 /// P (撇) −168…−102, S (豎) −102…−72, N (捺, 點) −72…−24.

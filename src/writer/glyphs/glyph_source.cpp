@@ -81,16 +81,22 @@ class Book : public GlyphSource {
 class LineFont : public GlyphSource {
   public:
     explicit LineFont(const fs::path& path) {
-        for (Glyph& g : parse_line_font(text_of(path, kMostBookBytes), path.string()))
-            glyphs_.emplace(g.code, std::move(g));
+        LineFontGlyphs font = parse_line_font(text_of(path, kMostBookBytes), path.string());
+        for (Glyph& g : font.glyphs) glyphs_.emplace(g.code, std::move(g));
+        kerning_ = std::move(font.kerning);
     }
     std::optional<Glyph> find(char32_t code) override {
         const auto at = glyphs_.find(code);
         return at == glyphs_.end() ? std::nullopt : std::optional(at->second);
     }
+    double kerning(char32_t first, char32_t second) override {
+        const auto at = kerning_.find({first, second});
+        return at == kerning_.end() ? 0 : at->second;
+    }
 
   private:
     std::map<char32_t, Glyph> glyphs_;
+    std::map<std::pair<char32_t, char32_t>, double> kerning_;
 };
 
 /// The first of several that has a character.
@@ -101,6 +107,11 @@ class Sources : public GlyphSource {
         for (const auto& one : all_)
             if (std::optional<Glyph> glyph = one->find(code)) return glyph;
         return std::nullopt;
+    }
+    double kerning(char32_t first, char32_t second) override {
+        for (const auto& one : all_)
+            if (const double k = one->kerning(first, second); k != 0) return k;
+        return 0;
     }
 
   private:
@@ -151,6 +162,8 @@ Glyph blank(char32_t c) {
 std::vector<std::optional<Glyph>> GlyphSource::find_line(const std::u32string& line) {
     std::vector<std::optional<Glyph>> out;
     for (const char32_t c : line) out.push_back(is_blank(c) ? blank(c) : find(c));
+    for (std::size_t i = 0; i + 1 < line.size(); ++i)
+        if (out[i] && out[i + 1]) out[i]->advance = std::max(0.0, out[i]->advance - kerning(line[i], line[i + 1]));
     return out;
 }
 

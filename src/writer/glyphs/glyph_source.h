@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,8 +19,11 @@ class GlyphSource {
     virtual ~GlyphSource() = default;
     /// Returns the character, nothing where the source has none. Throws `Error` with file and fault for a damaged one.
     virtual std::optional<Glyph> find(char32_t code) = 0;
-    /// Returns the characters of a line as they are set, in order of writing. The base does `find` for each; a font
-    /// shapes the line (ligatures, kerning). Nothing at characters that are missing.
+    /// Returns the units by which the second of two characters moves towards the first.
+    virtual double kerning(char32_t /*first*/, char32_t /*second*/) { return 0; }
+    /// Returns the characters of a line as they are set, in order of writing. The base does `find` for each and takes
+    /// `kerning` from the advances; a font shapes the line (ligatures, kerning). Nothing at characters that are
+    /// missing.
     virtual std::vector<std::optional<Glyph>> find_line(const std::u32string& line);
 };
 
@@ -43,6 +47,11 @@ std::vector<std::vector<Glyph>> glyphs_of(const std::vector<std::u32string>& lin
 /// Readers of one file each, for tests and fuzzers. `source` is named in errors. `code` is set in the result.
 Glyph parse_hanzi_json(std::string_view text, char32_t code, const std::string& source);
 Glyph parse_kanji_svg(std::string_view text, char32_t code, const std::string& source);
-std::vector<Glyph> parse_line_font(std::string_view text, const std::string& source);
+struct LineFontGlyphs {
+    std::vector<Glyph> glyphs;
+    /// Units by which the second of two characters moves towards the first (`hkern` with `u1`, `u2`, `k`).
+    std::map<std::pair<char32_t, char32_t>, double> kerning;
+};
+LineFontGlyphs parse_line_font(std::string_view text, const std::string& source);
 
 }  // namespace tuft::writer

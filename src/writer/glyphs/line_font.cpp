@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kDeepest = 64;
 constexpr double kTolerance = 5e-4;  // of the em
-constexpr std::size_t kMostGlyphs = 70'000;
+constexpr std::size_t kMostGlyphs = 70'000, kMostPairs = 200'000;
 constexpr double kDescent = 0.22;  // of the em below the baseline, where the font states none
 
 pugi::xml_node find_font(const pugi::xml_node& node, int depth) {
@@ -30,9 +30,20 @@ double number(const pugi::xml_node& node, const char* key, double otherwise, con
     return io::SvgReader(text, source).number();
 }
 
+/// The entries of a list such as "A,B,C"; a comma itself is no entry.
+std::vector<std::u32string> characters_between_commas(std::string_view text) {
+    std::vector<std::u32string> out;
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::string_view item = text.substr(at, text.find(',', at) - at);
+        out.push_back(characters_of(item));
+        at += item.size() + 1;
+    }
+    return out;
+}
+
 }  // namespace
 
-std::vector<Glyph> parse_line_font(std::string_view text, const std::string& source) {
+LineFontGlyphs parse_line_font(std::string_view text, const std::string& source) {
     pugi::xml_document document;
     if (const auto parsed = document.load_buffer(text.data(), text.size()); !parsed)
         throw Error(source, Message("no SVG font: {}", library_fault(parsed.description())));
@@ -43,7 +54,8 @@ std::vector<Glyph> parse_line_font(std::string_view text, const std::string& sou
     if (!(em >= 1 && em <= 1e6)) throw Error(source, Message("units-per-em is no number from 1 to 1000000"));
     const double scale = kSide / em, descent = std::abs(number(face, "descent", -kDescent * em, source));
     const double advance = number(font, "horiz-adv-x", 0.6 * em, source);
-    std::vector<Glyph> glyphs;
+    LineFontGlyphs out;
+    std::vector<Glyph>& glyphs = out.glyphs;
     for (const pugi::xml_node& node : font.children("glyph")) {
         const std::u32string name = characters_of(node.attribute("unicode").value());
         if (name.size() != 1) continue;
@@ -60,7 +72,15 @@ std::vector<Glyph> parse_line_font(std::string_view text, const std::string& sou
         glyphs.push_back(std::move(glyph));
     }
     if (glyphs.empty()) throw Error(source, Message("the font has no glyphs"));
-    return glyphs;
+    for (const pugi::xml_node& node : font.children("hkern")) {
+        const double k = scale * number(node, "k", 0, source);
+        if (!(std::abs(k) <= kSide)) throw Error(source, Message("'k' of hkern is wider than the em"));
+        for (const std::u32string& first : characters_between_commas(node.attribute("u1").value()))
+            for (const std::u32string& second : characters_between_commas(node.attribute("u2").value()))
+                if (first.size() == 1 && second.size() == 1 && out.kerning.size() < kMostPairs)
+                    out.kerning.emplace(std::pair(first[0], second[0]), k);
+    }
+    return out;
 }
 
 }  // namespace tuft::writer

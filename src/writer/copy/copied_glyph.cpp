@@ -1,0 +1,224 @@
+#include "writer/copy/copied_glyph.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "core/text/units.h"
+#include "writer/copy/photo.h"
+#include "writer/gesture/sides.h"
+
+namespace tuft::writer {
+namespace {
+
+constexpr double kTrim = 0.45;         // of a piece at most, cut off at a junction
+constexpr double kApart = 4;           // units between points of a line
+constexpr std::size_t kDirection = 8;  // points of an arm of a corner over which its direction is taken
+constexpr int kRingPasses = 8;         // smoothing of outlines
+constexpr double kLeastHalf = 1;       // units
+constexpr double kLongestHead = 90;    // units
+constexpr double kCornerHead = 1.25;   // of the half width: a corner lies so far from the middle of a head
+constexpr double kInset = 12;          // units between the begin of a centre line and the edge
+constexpr std::array<const char*, 6> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};
+
+/// The centre line of a stroke with half widths. `through`: where it runs through a junction.
+struct CopiedLine {
+    std::vector<Station> points;
+    std::vector<std::uint8_t> through;
+};
+
+/// A piece as it is written, without what lies within the discs of junctions at the ends that are cut.
+std::vector<Vec2> cut_line(const Piece& piece, bool reversed, double head, double tail) {
+    std::vector<Vec2> line = piece.line;
+    if (reversed) std::reverse(line.begin(), line.end());
+    const double whole = piece.length();
+    head = std::min(head, kTrim * whole), tail = std::min(tail, kTrim * whole);
+    std::vector<Vec2> out;
+    double along = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (i > 0) along += glm::distance(line[i], line[i - 1]);
+        if (along >= head && along <= whole - tail) out.push_back(line[i]);
+    }
+    return out.empty() ? line : out;
+}
+
+/// Where the two arms of a corner, continued straight on, meet; nothing if that is farther away than `most`.
+std::optional<Vec2> corner_of(const std::vector<Station>& in, const std::vector<Vec2>& on, double most) {
+    const std::size_t back = std::min<std::size_t>(in.size() - 1, kDirection),
+                      ahead = std::min<std::size_t>(on.size() - 1, kDirection);
+    const Vec2 a = in.back().centre, u = a - in[in.size() - 1 - back].centre, b = on.front(), v = b - on[ahead];
+    const double cross = u.x * v.y - u.y * v.x;
+    if (std::abs(cross) < 0.3 * glm::length(u) * glm::length(v)) return std::nullopt;
+    const Vec2 d = b - a;
+    const double t = (d.x * v.y - d.y * v.x) / cross, s = (d.x * u.y - d.y * u.x) / cross;
+    if (t < 0 || s < 0) return std::nullopt;
+    const Vec2 corner = a + t * u;
+    return glm::distance(corner, a) > most ? std::nullopt : std::optional(corner);
+}
+
+/// Adds points from the end of a line to another one.
+void bridge(CopiedLine& line, const Station& to, bool through) {
+    const Station from = line.points.back();
+    const int n = static_cast<int>(glm::distance(from.centre, to.centre) / kApart);
+    for (int i = 1; i <= n; ++i) {
+        const double f = i / (n + 1.0);
+        line.points.push_back({glm::mix(from.centre, to.centre, f), std::lerp(from.half, to.half, f)});
+        line.through.push_back(through);
+    }
+}
+
+CopiedLine line_of(const Skeleton& s, const std::vector<PieceUse>& stroke, const Room& room) {
+    CopiedLine out;
+    for (std::size_t k = 0; k < stroke.size(); ++k) {
+        const Piece& p = s.pieces[stroke[k].piece];
+        const SkeletonNode &from = s.nodes[stroke[k].reversed ? p.to : p.from],
+                           &to = s.nodes[stroke[k].reversed ? p.from : p.to];
+        const double head = k > 0 ? from.room : 0, tail = k + 1 < stroke.size() ? to.room : 0;
+        const std::vector<Vec2> line = cut_line(p, stroke[k].reversed, head, tail);
+        if (!out.points.empty()) {
+            const bool through = from.n_pieces > 2;
+            const Station next{line.front(), std::max(room.at(line.front()), kLeastHalf)};
+            if (const auto corner = corner_of(out.points, line, 3 * from.room)) {
+                bridge(out, {*corner, out.points.back().half}, through);
+                out.points.push_back({*corner, std::max(room.at(*corner), kLeastHalf)});
+                out.through.push_back(0);
+            }
+            bridge(out, next, through);
+        }
+        for (const Vec2& q : line) {
+            if (!out.points.empty() && glm::distance(out.points.back().centre, q) < 0.25 * kApart) continue;
+            out.points.push_back({q, std::max(room.at(q), kLeastHalf)});
+            out.through.push_back(0);
+        }
+    }
+    if (out.points.size() == 1) {
+        out.points.push_back({out.points[0].centre + Vec2(1, 0), out.points[0].half});
+        out.through.push_back(0);
+    }
+    return out;
+}
+
+/// Distance from a point to the edge of the ink along a direction.
+double ray(const Room& room, const Vec2& p, const Vec2& d) {
+    double far = 0;
+    while (far < kLongestHead && room.at(p + far * d) > 0) far += 1;
+    return far;
+}
+
+/// Where a wide head reaches out to the upper left, a brush landed there: the line begins in that corner.
+void begin_in_corner(CopiedLine& line, const Room& room) {
+    std::vector<Station>& p = line.points;
+    const Vec2 down = p[std::min<std::size_t>(p.size() - 1, 20)].centre - p[0].centre;
+    if (p.size() < 12 || down.y > -0.5 * std::abs(down.x)) return;  // 橫 and 提 begin as they go
+    std::size_t head = 0;
+    double along = 0;
+    for (std::size_t i = 1; i < p.size() / 2; ++i) {
+        along += glm::distance(p[i].centre, p[i - 1].centre);
+        if (along > kLongestHead) break;
+        if (p[i].half > p[head].half) head = i;
+    }
+    double far = 0;
+    Vec2 to(0);
+    for (double degrees = 95; degrees <= 200; degrees += 5) {
+        const Vec2 d(std::cos(degrees * kDegree), std::sin(degrees * kDegree));
+        if (const double reach = ray(room, p[head].centre, d); reach > far) far = reach, to = d;
+    }
+    if (far < kCornerHead * p[head].half || far >= kLongestHead) return;
+    const Station begin{p[head].centre + (far - kInset) * to, kLeastHalf};
+    p.erase(p.begin(), p.begin() + static_cast<std::ptrdiff_t>(head));
+    line.through.erase(line.through.begin(), line.through.begin() + static_cast<std::ptrdiff_t>(head));
+    p.insert(p.begin(), begin);
+    line.through.insert(line.through.begin(), 0);
+}
+
+/// Cells of each stroke.
+std::vector<Cells> areas_of(const Cells& ink, const std::vector<CopiedLine>& lines) {
+    Cells none = ink;
+    std::fill(none.inside.begin(), none.inside.end(), std::uint8_t{0});
+    std::vector<Cells> areas(lines.size(), none);
+    for (int j = 0; j < ink.height; ++j)
+        for (int i = 0; i < ink.width; ++i) {
+            if (!ink.at(i, j)) continue;
+            const Vec2 p = ink.centre(i, j);
+            const std::size_t cell = std::size_t(j) * ink.width + i;
+            double nearest = 1e300;
+            std::size_t owner = 0;
+            for (std::size_t s = 0; s < lines.size(); ++s)
+                for (std::size_t k = 0; k < lines[s].points.size(); ++k) {
+                    const Station& q = lines[s].points[k];
+                    const Vec2 d = p - q.centre;
+                    const double power = glm::dot(d, d) - q.half * q.half;
+                    if (power < nearest) nearest = power, owner = s;
+                    if (power <= 0 && lines[s].through[k]) areas[s].inside[cell] = 1;
+                }
+            areas[owner].inside[cell] = 1;
+        }
+    return areas;
+}
+
+}  // namespace
+
+Glyph copied_glyph(const Cells& ink, const Skeleton& skeleton, const StrokeOrder& order, char32_t code) {
+    const Room room(ink);
+    std::vector<CopiedLine> lines;
+    for (const auto& stroke : order) {
+        lines.push_back(line_of(skeleton, stroke, room));
+        const PieceUse& first = stroke.front();
+        const Piece& piece = skeleton.pieces[first.piece];
+        if (skeleton.nodes[first.reversed ? piece.to : piece.from].n_pieces == 1) begin_in_corner(lines.back(), room);
+    }
+    const std::vector<Cells> areas = areas_of(ink, lines);
+    Glyph glyph{.code = code};
+    for (std::size_t s = 0; s < lines.size(); ++s) {
+        GlyphStroke stroke;
+        for (const Station& p : lines[s].points) stroke.median.push_back(p.centre);
+        stroke.outline = boundaries(areas[s], kRingPasses);
+        glyph.strokes.push_back(std::move(stroke));
+    }
+    return glyph;
+}
+
+std::string numbered_svg(const Cells& ink, const Skeleton& skeleton, const StrokeOrder& order) {
+    const auto path = [](const std::vector<Vec2>& line, bool closed) {
+        std::string d;
+        for (std::size_t i = 0; i < line.size(); ++i)
+            d += fmt::format("{}{:.1f} {:.1f}", i == 0 ? "M" : "L", line[i].x, kSide - line[i].y);
+        return d + (closed ? "Z" : "");
+    };
+    std::string ink_path;
+    for (const Ring& ring : boundaries(ink, kRingPasses)) ink_path += path(ring, true);
+    std::string svg = fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"1024\" height=\"1104\" viewBox=\"0 0 1024 1104\">\n"
+        "<rect width=\"1024\" height=\"1104\" fill=\"#fff\"/>\n<path d=\"{}\" fill=\"#d0d0d0\"/>\n",
+        ink_path);
+    std::string numbers;
+    for (std::size_t s = 0; s < order.size(); ++s)
+        for (const PieceUse& use : order[s]) {
+            std::vector<Vec2> line = skeleton.pieces[use.piece].line;
+            if (use.reversed) std::reverse(line.begin(), line.end());
+            const char* colour = kColours[s % kColours.size()];
+            const Vec2 end = line.back(), d = end - line[line.size() - std::min<std::size_t>(line.size(), 5)];
+            const double size = std::max(glm::length(d), 1e-9);
+            const Vec2 on = d / size, side(-on.y, on.x);
+            svg += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"5\"/>\n", path(line, false),
+                               colour);
+            svg += fmt::format("<path d=\"{}\" fill=\"{}\"/>\n",
+                               path({end + 4.0 * on, end - 14.0 * on + 8.0 * side, end - 14.0 * on - 8.0 * side}, true),
+                               colour);
+            const Vec2 middle = line[line.size() / 2];
+            numbers += fmt::format(
+                "<text x=\"{:.0f}\" y=\"{:.0f}\" fill=\"{}\" stroke=\"#fff\" stroke-width=\"6\" "
+                "paint-order=\"stroke\">{}</text>\n",
+                middle.x + 6, kSide - middle.y - 6, colour, use.piece + 1);
+        }
+    svg += "<g font-family=\"sans-serif\" font-size=\"30\" font-weight=\"bold\">\n" + numbers + "</g>\n";
+    svg += fmt::format("<text x=\"24\" y=\"1070\" font-family=\"monospace\" font-size=\"{:.0f}\">{}</text>\n</svg>\n",
+                       std::clamp(1600.0 / static_cast<double>(order_text(order).size() + 1), 10.0, 30.0),
+                       order_text(order));
+    return svg;
+}
+
+}  // namespace tuft::writer

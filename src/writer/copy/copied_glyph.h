@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "writer/copy/stroke_order.h"
+#include "writer/glyphs/glyph.h"
+
+/// \file
+/// A character copied from its ink. Called by `tuft write --like`.
+namespace tuft::writer {
+
+/// Returns the character whose strokes are an order of pieces: centre lines, and the ink of each as its outline.
+///
+/// A centre line runs straight through junctions of its stroke; at a corner its arms are continued to where they meet.
+/// A cell of ink belongs to the stroke whose centre line is nearest by d² − r², with r the half width there, and
+/// besides to each that covers it where it runs through a junction. Preconditions: the order is one of the skeleton's
+/// pieces. Cost: cells × points of the lines.
+Glyph copied_glyph(const Cells& ink, const Skeleton& skeleton, const StrokeOrder& order, char32_t code);
+
+/// Returns a drawing of the ink with every piece, its number and its direction of writing; a colour for each stroke,
+/// and below the order as `parse_order` reads it. SVG.
+std::string numbered_svg(const Cells& ink, const Skeleton& skeleton, const StrokeOrder& order);
+
+}  // namespace tuft::writer

@@ -1,0 +1,128 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "writer/copy/copied_glyph.h"
+#include "writer/copy/photo.h"
+#include "writer/gesture/stroke_line.h"
+
+namespace tuft::writer {
+namespace {
+
+/// A bar with round ends, pixels, y down.
+struct Bar {
+    Vec2 from, to;
+    double half = 12;
+};
+
+double distance_to(const Bar& bar, const Vec2& p) {
+    const Vec2 d = bar.to - bar.from;
+    const double t = std::clamp(glm::dot(p - bar.from, d) / glm::dot(d, d), 0.0, 1.0);
+    return glm::distance(p, bar.from + t * d);
+}
+
+/// A picture of bars on paper whose light falls to 45 % from the left to the right and is stained by ±3 %.
+io::Image8 photo_of(const std::vector<Bar>& bars, int side = 400) {
+    io::Image8 image{.width = side, .height = side, .channels = 1, .pixels = {}};
+    std::uint32_t state = 1;
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+            double nearest = 1e9;
+            for (const Bar& bar : bars) nearest = std::min(nearest, distance_to(bar, {x + 0.5, y + 0.5}) - bar.half);
+            const double ink = std::clamp(0.5 - nearest, 0.0, 1.0);
+            state = state * 1664525u + 1013904223u;
+            const double grain = 0.06 * (state / 4294967296.0 - 0.5);
+            const double light = (1 - 0.55 * x / side) * (0.9 - 0.7 * ink + grain);
+            image.pixels.push_back(static_cast<std::uint8_t>(std::clamp(255 * light, 0.0, 255.0)));
+        }
+    return image;
+}
+
+const std::vector<Bar> kTen{{{50, 200}, {350, 200}}, {{200, 50}, {200, 350}}};
+const std::vector<Bar> kMouth{
+    {{100, 100}, {100, 300}}, {{100, 100}, {300, 100}}, {{300, 100}, {300, 300}}, {{100, 300}, {300, 300}}};
+
+Glyph copied(const io::Image8& picture) {
+    const Cells ink = ink_of(picture, "photo");
+    const Skeleton s = skeleton_of(ink);
+    return copied_glyph(ink, s, order_by_rules(s), U'x');
+}
+
+double overlap(const Cells& a, const Cells& b) {
+    double both = 0, either = 0;
+    for (std::size_t i = 0; i < a.inside.size(); ++i)
+        both += a.inside[i] && b.inside[i], either += a.inside[i] || b.inside[i];
+    return both / either;
+}
+
+// The box of 324 pixels becomes 0.84 of the square; a cell is 2 units, so an edge may be half a cell off.
+TEST(Copy, ACrossOnShadedPaperIsTwoStrokesInOrder) {
+    const Glyph g = copied(photo_of(kTen));
+    ASSERT_EQ(g.strokes.size(), 2u);
+    const double unit = kCopiedPart * kSide / 324;
+    for (int k = 0; k < 2; ++k) {
+        const GlyphStroke& s = g.strokes[k];
+        const Vec2 d = s.median.back() - s.median.front();
+        EXPECT_EQ(make_stroke_line(s.median).stroke_class(), k == 0 ? "H" : "S");
+        // 300 pixels between the middles of the ends and 12 less than the half width beyond each.
+        EXPECT_NEAR(glm::length(d), unit * (300 + 2 * 12) - 24, 6);
+        for (const Vec2& p : s.median) EXPECT_NEAR(k == 0 ? p.y : p.x, 512, 4);  // 2 cells
+        Cells area = cells_over(s.outline, 2, 10);
+        fill(area, s.outline);
+        // The bar with its ends; the crossing belongs to both. Rounding of the corners at the crossing: 3 %.
+        const double full = unit * unit * (300 * 24 + 3.14159 * 144);
+        EXPECT_NEAR(static_cast<double>(area.count()) * 4, full, 0.05 * full);
+    }
+}
+
+TEST(Copy, SpecksPinholesAndARubbingGiveTheSameInk) {
+    const io::Image8 clean = photo_of(kTen);
+    io::Image8 dirty = clean, rubbing = clean;
+    for (int k = 0; k < 40; ++k)
+        for (int y = 0; y < 3; ++y)
+            for (int x = 0; x < 3; ++x) {
+                const int a = 20 + 9 * k + x, b = (37 * k) % 380 + y;
+                std::uint8_t& p = dirty.pixels[std::size_t(b) * 400 + a];
+                if (std::abs(b - 200) > 20 && std::abs(a - 200) > 20) p = 10;
+                if (std::abs(b - 200) < 8) p = 230;
+            }
+    for (std::uint8_t& p : rubbing.pixels) p = static_cast<std::uint8_t>(255 - p);
+    const Cells ink = ink_of(clean, "photo");
+    EXPECT_GT(overlap(ink, ink_of(dirty, "photo")), 0.98);
+    // The light of a rubbing falls the other way round, so its threshold lies within the soft edge: half a pixel of 24.
+    EXPECT_GT(overlap(ink, ink_of(rubbing, "photo")), 0.95);
+}
+
+TEST(Copy, ABoxIsThreeStrokes) {
+    const Glyph g = copied(photo_of(kMouth));
+    ASSERT_EQ(g.strokes.size(), 3u);
+    EXPECT_EQ(make_stroke_line(g.strokes[0].median).stroke_class(), "S");
+    EXPECT_EQ(make_stroke_line(g.strokes[1].median).stroke_class(), "HS");
+    EXPECT_EQ(make_stroke_line(g.strokes[2].median).stroke_class(), "H");
+}
+
+TEST(Copy, LeftBeforeRightAndTopBeforeBottom) {
+    const Glyph g = copied(photo_of({{{250, 100}, {350, 100}}, {{250, 300}, {350, 300}}, {{80, 80}, {80, 320}}}));
+    ASSERT_EQ(g.strokes.size(), 3u);
+    EXPECT_LT(g.strokes[0].median[0].x, 400);
+    EXPECT_GT(g.strokes[1].median[0].y, g.strokes[2].median[0].y);
+}
+
+TEST(Copy, PicturesWithoutInkAreNamed) {
+    EXPECT_ANY_THROW(ink_of(photo_of({}), "photo"));
+    EXPECT_ANY_THROW(
+        ink_of(io::Image8{.width = 4, .height = 4, .channels = 1, .pixels = std::vector<std::uint8_t>(16)}, "p"));
+}
+
+TEST(Copy, AnOrderIsWhatItWasPrintedAs) {
+    const StrokeOrder order = parse_order(" 1+-2, 4  3 ", 4);
+    EXPECT_EQ(order, (StrokeOrder{{{0, false}, {1, true}}, {{3, false}}, {{2, false}}}));
+    EXPECT_EQ(parse_order(order_text(order), 4), order);
+    for (const char* bad : {"", " ", "0", "5", "1 1", "1+", "+1", "a", "1-2", "--1", "99999999999999999999999"})
+        EXPECT_THROW(parse_order(bad, 4), Error) << bad;
+}
+
+}  // namespace
+}  // namespace tuft::writer
