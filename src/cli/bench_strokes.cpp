@@ -259,4 +259,22 @@ double first_ink_milliseconds(const stroke::Model& model, int texels) {
     return quantile_of(runs, 0.5);
 }
 
+double hand_seconds(const stroke::Model& model, const stroke::PaintStroke& stroke) {
+    constexpr std::size_t kAtOnce = 17;  // of a thousand a second
+    stroke::Document painting(model);
+    painting.use(dragged_brush(model, {}));
+    stroke::PaintStroke begun = stroke;
+    const std::vector<brush::Pose> poses = stroke::spatial_poses(begun.trace);
+    begun.trace.samples.clear();
+    painting.begin(begun);
+    std::vector<double> times;
+    for (std::size_t i = 0; i < poses.size(); i += kAtOnce) {
+        const double start = wall_seconds();
+        painting.extend(std::span(poses).subspan(i, std::min(kAtOnce, poses.size() - i)));
+        times.push_back(wall_seconds() - start);
+    }
+    painting.end();
+    return quantile_of(times, 0.5);
+}
+
 }  // namespace tuft::cli

@@ -61,4 +61,8 @@ double stamps_per_second(const stroke::Model& model, int texels, double wiped = 
 /// time of all that is computed between.
 double first_ink_milliseconds(const stroke::Model& model, int texels);
 
+/// How long the ink of a hand that paints is behind it: wall time from samples, which come as many at once as a screen
+/// shows in a sixtieth of a second, to all of their ink on the texels. Median of a stroke.
+double hand_seconds(const stroke::Model& model, const stroke::PaintStroke& stroke);
+
 }  // namespace tuft::cli

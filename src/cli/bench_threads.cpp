@@ -158,6 +158,7 @@ nlohmann::json measure_threads(const Bench& a, Console& console) {
                                  {"replay", [&] { return strokes.replay(); }},
                                  {"paint_many", [&] { return many.paint(); }},
                                  {"wet_strokes", [&] { return wet.paint(); }},
+                                 {"hand", [&] { return hand_seconds(m.model, dragged(m.model, {})); }},
                                  {"film_step", wet_atlas(m.model)}},
                                 counts, a.seconds, console);
     set_thread_count(1);
@@ -165,15 +166,16 @@ nlohmann::json measure_threads(const Bench& a, Console& console) {
 }
 
 void print_threads(const nlohmann::json& measured) {
-    static constexpr std::array<std::pair<const char*, const char*>, 6> kColumns{{{"paint", "40 strokes"},
+    static constexpr std::array<std::pair<const char*, const char*>, 7> kColumns{{{"paint", "40 strokes"},
                                                                                   {"replay", "replayed"},
                                                                                   {"paint_many", "many short"},
                                                                                   {"wet_strokes", "wet strokes"},
+                                                                                  {"hand", "hand"},
                                                                                   {"film_step", "film step"},
                                                                                   {"prepare", "preparing"}}};
     fmt::print("{:>7}", "threads");
     for (const auto& [key, title] : kColumns)
-        fmt::print("{:>18}", fmt::format("{} (x{})", title, measured["rounds"][key].get<int>()));
+        fmt::print("{:>17}", fmt::format("{} (x{})", title, measured["rounds"][key].get<int>()));
     fmt::print("\n");
     const nlohmann::json& first = measured["threads"].front();
     for (const nlohmann::json& row : measured["threads"]) {
@@ -181,7 +183,7 @@ void print_threads(const nlohmann::json& measured) {
         for (const auto& [key, title] : kColumns) {
             const std::string figure = std::string(key) + "_seconds";
             const double seconds = row[figure].get<double>();
-            fmt::print("{:>9.3f} s {:>5.2f} x", seconds, first[figure].get<double>() / seconds);
+            fmt::print("{:>8.4f} s {:>5.2f} x", seconds, first[figure].get<double>() / seconds);
         }
         fmt::print("\n");
     }
