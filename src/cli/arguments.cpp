@@ -322,6 +322,15 @@ CLI::App* add_bench(CLI::App& app, Bench& bench) {
         ->check(number_in(1, kMostTexels, "POSITIVE"));
     command->add_option("--isa", bench.isa, "instruction set of the stamps: best, avx512, avx2, baseline")
         ->check(CLI::IsMember({"best", "avx512", "avx2", "baseline"}));
+    auto* scaling = command->add_option("--scaling", bench.scaling,
+                                        "measure only how painting, wet ink and preparing a model go with these "
+                                        "numbers of threads, as in 1,2,4,8");
+    scaling->delimiter(',')->check(number_in(1, 1024, "THREADS"));
+    command
+        ->add_option("--seconds", bench.seconds,
+                     "seconds within which measurements over numbers of threads are repeated, after a first round "
+                     "(default: 90)")
+        ->check(number_in(0, 3600));
     auto* report = command->add_option("--report", bench.report,
                                        "write a page of figures with plots (.html or .md), and its numbers as .json "
                                        "beside it; also measures how speed goes with threads, triangles and texels");
@@ -329,6 +338,7 @@ CLI::App* add_bench(CLI::App& app, Bench& bench) {
         ->add_option("--against", bench.against,
                      "numbers of an earlier report (.json) to compare with (default: those that the page replaces)")
         ->needs(report);
+    scaling->excludes(report);
     add_store(command, bench.surface);
     add_common(command, bench.common);
     return command;

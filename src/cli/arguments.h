@@ -251,9 +251,11 @@ struct InkWork {
 struct Bench {
     std::filesystem::path model;  ///< empty: models that the benchmark generates
     bool quick = false;
-    Surface surface;                ///< size 0: 4096, or 2048 when quick
-    std::string isa = "best";       ///< best | avx512 | avx2 | baseline
-    std::filesystem::path report;   ///< page to write, .html or .md; its figures go beside it as .json
+    std::vector<int> scaling;      ///< numbers of threads, to measure only how speed goes with them; empty: all figures
+    double seconds = 90;           ///< within which runs over numbers of threads are repeated
+    Surface surface;               ///< size 0: 4096, or 2048 when quick
+    std::string isa = "best";      ///< best | avx512 | avx2 | baseline
+    std::filesystem::path report;  ///< page to write, .html or .md; its figures go beside it as .json
     std::filesystem::path against;  ///< figures of an earlier report (.json); empty: those beside `report`
     Common common;
 };

@@ -10,6 +10,7 @@
 #include "cli/bench_film.h"
 #include "cli/bench_report.h"
 #include "cli/bench_strokes.h"
+#include "cli/bench_threads.h"
 #include "cli/commands.h"
 #include "cli/steps.h"
 #include "core/system/parallel.h"
@@ -216,11 +217,25 @@ void print_figures(const nlohmann::json& j) {
                j["resident_mb"].get<double>());
 }
 
+int run_scaling(const Bench& a, Console& console) {
+    nlohmann::json j = measure_threads(a, console);
+    j["machine"] = cpu_name();
+    console.clear();
+    if (a.common.json) {
+        print_json(j);
+    } else {
+        fmt::print("{}, medians of wall time\n", cpu_name());
+        print_threads(j);
+    }
+    return 0;
+}
+
 }  // namespace
 
 int run(const Bench& a) {
     check_bench_report(a);
     Console console(a.common.quiet);
+    if (!a.scaling.empty()) return run_scaling(a, console);
     set_thread_count(1);
     const std::uint32_t size = a.surface.atlas_size > 0 ? a.surface.atlas_size : a.quick ? 2048 : 4096;
     const footprint::Isa isa = std::min(isa_of(a.isa), footprint::best_isa());

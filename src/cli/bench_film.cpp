@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "core/system/parallel.h"
@@ -51,25 +52,41 @@ double wet_texels(const ink::Canvas& canvas) {
     return n;
 }
 
+/// A film that stays wet, advanced as painting does it.
+struct FilmRun {
+    FilmRun(const stroke::Model& model, ink::WetFilm& on, std::size_t tiles)
+        : film(on), canvas(wet_canvas(model, tiles)), params(ink::film_params(ink::load_substrate("bisque"))) {
+        const double area = model.texels.texel_size * model.texels.texel_size;
+        dt = 0.005 * area / (params.mobility * 3);
+        film.advance(canvas, dt, params);
+    }
+
+    /// Time of a step: the mean of ten and more.
+    double step_seconds(clockid_t clock) {
+        params.shortest_step = 0;
+        const double start = seconds(clock);
+        std::size_t steps = 0;
+        while (steps < 10) steps += film.advance(canvas, 60 * dt, params).steps;
+        return (seconds(clock) - start) / static_cast<double>(steps);
+    }
+
+    ink::WetFilm& film;
+    ink::Canvas canvas;
+    ink::FilmParams params;
+    double dt = 0;
+};
+
 struct StepTime {
     double seconds = 0, per_texel = 0;  ///< of one step
 };
 
-/// Medians of nine runs of ten steps and more, on a film that stays wet, as painting does them.
+/// Medians of nine runs.
 StepTime step_time(const stroke::Model& model, ink::WetFilm& film, std::size_t tiles, clockid_t clock) {
-    ink::Canvas canvas = wet_canvas(model, tiles);
-    ink::FilmParams p = ink::film_params(ink::load_substrate("bisque"));
-    const double area = model.texels.texel_size * model.texels.texel_size;
-    const double dt = 0.005 * area / (p.mobility * 3);
-    film.advance(canvas, dt, p);
+    FilmRun run(model, film, tiles);
     std::vector<double> runs, per_texel;
     for (int i = 0; i < 9; ++i) {
-        p.shortest_step = 0;
-        const double start = seconds(clock);
-        std::size_t steps = 0;
-        for (double t = 0; steps < 10; t += 1) steps += film.advance(canvas, 60 * dt, p).steps;
-        runs.push_back((seconds(clock) - start) / static_cast<double>(steps));
-        per_texel.push_back(runs.back() / wet_texels(canvas));  // it spreads a little
+        runs.push_back(run.step_seconds(clock));
+        per_texel.push_back(runs.back() / wet_texels(run.canvas));  // it spreads a little
     }
     return {median(runs), median(per_texel)};
 }
@@ -110,6 +127,13 @@ double transfer_seconds(const stroke::Model& model, std::size_t tiles) {
 }
 
 }  // namespace
+
+std::function<double()> wet_atlas(const stroke::Model& model) {
+    const auto film =
+        std::make_shared<ink::WetFilm>(model.texels, atlas::build_seam_links(*model.mesh, model.atlas, model.texels));
+    const auto run = std::make_shared<FilmRun>(model, *film, model.texels.n_slots());
+    return [film, run] { return run->step_seconds(CLOCK_MONOTONIC); };
+}
 
 FilmFigures measure_film(const stroke::Model& model) {
     FilmFigures out;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "stroke/surface/model.h"
 
 /// \file
@@ -15,5 +17,9 @@ struct FilmFigures {
 
 /// Measures on the model's atlas. Runs for some seconds.
 FilmFigures measure_film(const stroke::Model& model);
+
+/// Puts the whole atlas under a film of water with four pigments. Returns a function that advances it and returns the
+/// wall time of a step, the mean of ten and more. The model must outlive it.
+std::function<double()> wet_atlas(const stroke::Model& model);
 
 }  // namespace tuft::cli

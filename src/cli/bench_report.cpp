@@ -138,6 +138,9 @@ std::vector<NamedPlot> plots_of(const json& j) {
                             .x_label = "threads",
                             .y_label = "times as fast as one",
                             .series = {speed_up(threads, "paint_seconds", "40 strokes"),
+                                       speed_up(threads, "paint_many_seconds", "many short strokes"),
+                                       speed_up(threads, "wet_strokes_seconds", "wet strokes"),
+                                       speed_up(threads, "film_step_seconds", "film"),
                                        speed_up(threads, "prepare_seconds", "preparing a model"), ideal}})});
     plots.push_back(
         {"triangles", svg_of({.title = "Whole path over triangles, 64 texels wide, one thread",

@@ -10,9 +10,8 @@
 /// bench`.
 namespace tuft::cli {
 
-/// Returns four lists of measurements: "threads" (40 strokes side by side, and preparing a model; wall time),
-/// "triangles", "texels" and "stamp" (one thread, CPU time; medians). Runs for half a minute, or some minutes where not
-/// quick. Sets the number of threads to one.
+/// Returns what `measure_threads` does, and three lists of measurements: "triangles", "texels" and "stamp" (one thread,
+/// CPU time; medians). Runs for a minute, or some minutes where not quick. Sets the number of threads to one.
 nlohmann::json measure_scaling(const Bench& arguments, Console& console);
 
 }  // namespace tuft::cli

@@ -37,13 +37,14 @@ struct Step {
 };
 
 // Places a texel apart, straight on over the surface from one side of it; left at an edge.
-std::vector<Step> path_over(const stroke::Model& model, int n, double turn = 0) {
+std::vector<Step> path_over(const stroke::Model& model, int n, double turn = 0, double height = 0) {
     const Box& box = model.mesh->bounds;
-    const Vec3 out{std::cos(0.3 + turn), std::sin(0.3 + turn), 0};
+    const Vec3 ahead{-std::sin(0.3 + turn), std::cos(0.3 + turn), 0};
+    const Vec3 out{std::cos(height) * ahead.y, -std::cos(height) * ahead.x, std::sin(height)};
     const auto hit = model.query->ray(box.centre() + box.diagonal() * out, -glm::normalize(out));
     auto at = hit ? hit : model.query->closest_point(box.centre() + box.diagonal() * out);
     const double texel = model.atlas.texel_size;
-    std::vector<Step> path{{make_frame(at->position, at->normal, {-out.y, out.x, 0.0}), at->triangle}};
+    std::vector<Step> path{{make_frame(at->position, at->normal, ahead), at->triangle}};
     while (static_cast<int>(path.size()) < n) {
         const Frame& here = path.back().frame;
         at = model.query->closest_point(here.origin + texel * here.t);
@@ -183,34 +184,35 @@ double footprint_texels(int texels) {
     return pi / 4 * texels * texels;
 }
 
-// The whole path: a brush as thick as makes lines of about `texels` across, dragged along
-// the path; hand samples at 1 kHz and a stamp per texel.
-stroke::PaintStroke drag(const stroke::Model& model, stroke::Document& painting, int texels, const char* brush,
-                         double turn) {
-    brush::Preset preset = brush::load_preset(brush);
-    const double scale = texels * model.atlas.texel_size / brush::tuft_width(preset);
+brush::Preset dragged_brush(const stroke::Model& model, const Drag& drag) {
+    brush::Preset preset = brush::load_preset(drag.brush);
+    const double scale = drag.texels * model.atlas.texel_size / brush::tuft_width(preset);
     preset.name = "bench";
     preset.length *= scale;
     preset.radius *= scale;
     preset.width *= scale;
     preset.stiffness *= std::pow(scale, 4);
     preset.capacity = 1e-4;
-    painting.use(preset);
+    return preset;
+}
+
+stroke::PaintStroke dragged(const stroke::Model& model, const Drag& drag) {
+    const double length = dragged_brush(model, drag).length;
     stroke::PaintStroke s;
     s.trace.flat = false;
     s.brush = "bench";
     s.ink = "carbon";
-    const std::vector<Step> path = path_over(model, 401, turn);
-    const int reach = texels / 2;
-    for (int i = 0; i <= 400; ++i) {
+    const int last = drag.samples - 1, reach = drag.texels / 2;
+    const std::vector<Step> path = path_over(model, drag.samples, drag.turn, drag.height);
+    for (int i = 0; i <= last; ++i) {
         // The hand keeps to the mean of the normals over the width of the line.
         Vec3 n{0};
-        for (int k = std::max(0, i - reach); k <= std::min(400, i + reach); ++k) n += path[k].frame.n;
+        for (int k = std::max(0, i - reach); k <= std::min(last, i + reach); ++k) n += path[k].frame.n;
         n = glm::length(n) > 0 ? glm::normalize(n) : path[i].frame.n;
-        const double press = std::min(1.0, i / 60.0) * 0.25 * preset.length;
+        const double press = std::min(1.0, i / 60.0) * 0.25 * length;
         stroke::StrokeSample p;
         p.time = i * 1e-3;
-        p.position = path[i].frame.origin + (preset.length - press) * n;
+        p.position = path[i].frame.origin + (length - press) * n;
         const Frame f = make_frame(Vec3{0}, n, glm::cross(n, path[i].frame.t));
         p.rotation = glm::quat_cast(Mat3(f.t, f.b, f.n));
         s.trace.samples.push_back(p);
@@ -222,7 +224,9 @@ stroke::PaintStroke drag(const stroke::Model& model, stroke::Document& painting,
 // inked by itself.
 double stamps_per_second(const stroke::Model& model, int texels, double wiped, const char* brush, int repeats) {
     stroke::Document painting(model);
-    stroke::PaintStroke s = drag(model, painting, texels, brush);
+    const Drag drag{.texels = texels, .brush = brush};
+    painting.use(dragged_brush(model, drag));
+    stroke::PaintStroke s = dragged(model, drag);
     const stroke::BrushAction wipe{
         .kind = stroke::BrushActionKind::wipe, .brush = s.brush, .ink = s.ink, .extent = {.amount = wiped}};
     if (wiped > 0) s.settings.dip = stroke::DipMode::persistent;
@@ -242,7 +246,8 @@ double first_ink_milliseconds(const stroke::Model& model, int texels) {
     std::vector<double> runs;
     for (int repeat = 0; repeat < 5; ++repeat) {
         stroke::Document painting(model);
-        stroke::PaintStroke s = drag(model, painting, texels);
+        painting.use(dragged_brush(model, {.texels = texels}));
+        stroke::PaintStroke s = dragged(model, {.texels = texels});
         const std::vector<brush::Pose> poses = stroke::spatial_poses(s.trace);
         s.trace.samples.clear();
         const double start = wall_seconds();
@@ -252,6 +257,24 @@ double first_ink_milliseconds(const stroke::Model& model, int texels) {
         runs.push_back((wall_seconds() - start) * 1e3);
     }
     return quantile_of(runs, 0.5);
+}
+
+double hand_seconds(const stroke::Model& model, const stroke::PaintStroke& stroke) {
+    constexpr std::size_t kAtOnce = 17;  // of a thousand a second
+    stroke::Document painting(model);
+    painting.use(dragged_brush(model, {}));
+    stroke::PaintStroke begun = stroke;
+    const std::vector<brush::Pose> poses = stroke::spatial_poses(begun.trace);
+    begun.trace.samples.clear();
+    painting.begin(begun);
+    std::vector<double> times;
+    for (std::size_t i = 0; i < poses.size(); i += kAtOnce) {
+        const double start = wall_seconds();
+        painting.extend(std::span(poses).subspan(i, std::min(kAtOnce, poses.size() - i)));
+        times.push_back(wall_seconds() - start);
+    }
+    painting.end();
+    return quantile_of(times, 0.5);
 }
 
 }  // namespace tuft::cli

@@ -39,10 +39,18 @@ double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps
 /// Texels of a disc of `texels` across.
 double footprint_texels(int texels);
 
-/// A stroke along a path by a brush as thick as makes lines of about `texels` across; the document gets the brush. Hand
-/// samples at 1 kHz and a stamp per texel. `turn` (radians about z): where on the model it begins.
-stroke::PaintStroke drag(const stroke::Model& model, stroke::Document& painting, int texels,
-                         const char* brush = "mixed-medium", double turn = 0);
+/// A stroke that is measured.
+struct Drag {
+    int texels = 64;                     ///< width of the line, about
+    const char* brush = "mixed-medium";  ///< preset, scaled to that width
+    double turn = 0, height = 0;         ///< radians about z and over the equator: where on the model it begins
+    int samples = 401;                   ///< of the hand, at 1 kHz, a texel apart
+};
+
+/// Returns a preset named "bench": `drag.brush`, as thick as makes lines of that width.
+brush::Preset dragged_brush(const stroke::Model& model, const Drag& drag);
+/// Returns a stroke of that brush along a path over the model, a stamp per texel.
+stroke::PaintStroke dragged(const stroke::Model& model, const Drag& drag);
 
 /// The whole path: contact, bending and deposit of that stroke. Median of repeats, CPU time. With `wiped` of its ink
 /// gone the tuft no longer closes: every one of its bristles is drawn and inked by itself.
@@ -52,5 +60,9 @@ double stamps_per_second(const stroke::Model& model, int texels, double wiped = 
 /// From the sample at which the tuft first touches to ink on the texels, in a painting that has just been opened: wall
 /// time of all that is computed between.
 double first_ink_milliseconds(const stroke::Model& model, int texels);
+
+/// How long the ink of a hand that paints is behind it: wall time from samples, which come as many at once as a screen
+/// shows in a sixtieth of a second, to all of their ink on the texels. Median of a stroke.
+double hand_seconds(const stroke::Model& model, const stroke::PaintStroke& stroke);
 
 }  // namespace tuft::cli

@@ -586,7 +586,9 @@ TEST_F(Commands, AReportOfTheBenchmarkIsRefusedBeforeItMeasures) {
                                                   {"--report " + path("a.md") + " --against " + path("none.json"), 1},
                                                   {"--report " + path("a.md") + " --against " + path("other.json"), 1},
                                                   {"--report " + path("a.md") + " --against " + path("deep.json"), 1},
-                                                  {"--against " + path("other.json"), 2}}) {
+                                                  {"--against " + path("other.json"), 2},
+                                                  {"--scaling 0,1", 2},
+                                                  {"--scaling 1,2 --report " + path("a.html"), 2}}) {
         const Ran ran = tuft("bench --quick " + arguments);
         EXPECT_EQ(ran.status, status) << arguments << ran.err;
         EXPECT_EQ(ran.error_lines(), 1) << ran.err;

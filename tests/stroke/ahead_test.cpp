@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <span>
+#include <utility>
+
 #include "core/system/parallel.h"
 #include "ink/exchange/deposit.h"
 #include "sheet.h"
@@ -113,6 +117,58 @@ TEST_F(Ahead, AFaultOfAStrokePlannedAheadIsThatOfItsTurn) {
     Document p(model());
     EXPECT_THROW(p.paint(entries, {}), Error);
     EXPECT_EQ(p.journal().entries().size(), 1u);
+}
+
+/// Strokes of a hand, after each other, whose samples come `at_once` by `at_once`.
+Painted paint_by_hand(const std::vector<PaintStroke>& strokes, std::size_t at_once, int threads) {
+    set_thread_count(threads);
+    Document p(model(), {.substrate = "bisque", .record_forces = true});
+    Painted painted;
+    for (PaintStroke s : strokes) {
+        const std::vector<brush::Pose> poses = spatial_poses(s.trace);
+        s.trace.samples.clear();
+        p.begin(s);
+        for (std::size_t i = 0; i < poses.size(); i += at_once)
+            p.extend(std::span(poses).subspan(i, std::min(at_once, poses.size() - i)));
+        painted.reports.push_back(p.end());
+    }
+    painted.hash = p.layers().hash();
+    return painted;
+}
+
+// Its tuft is wet, gets half dry and parts on the way, or was parted; the ink stays, or flows.
+TEST_F(Ahead, AHandsStrokesHaveTheSameBitsHoweverTheirSamplesCome) {
+    PaintStroke in_wet = until_dry(stroke_at(0, DipMode::each), 2);
+    in_wet.settings.film = FilmModel::wet;
+    const std::vector<PaintStroke> strokes{stroke_at(-0.01, DipMode::each),
+                                           until_dry(stroke_at(0.004, DipMode::persistent), 8),
+                                           stroke_at(0.008, DipMode::persistent), in_wet};
+    const Painted expected = paint_by_hand(strokes, 1'000'000, 1);
+    for (const auto [at_once, threads] : {std::pair{1u, 1}, {1u, 2}, {7u, 3}, {50u, 2}}) {
+        const Painted painted = paint_by_hand(strokes, at_once, threads);
+        EXPECT_EQ(painted.hash, expected.hash) << at_once << " at once, " << threads << " threads";
+        for (std::size_t i = 0; i < strokes.size(); ++i) {
+            EXPECT_EQ(painted.reports[i].ink_left, expected.reports[i].ink_left) << i;
+            ASSERT_EQ(painted.reports[i].forces.size(), expected.reports[i].forces.size()) << i;
+            for (std::size_t k = 0; k < expected.reports[i].forces.size(); ++k)
+                EXPECT_EQ(painted.reports[i].forces[k].force, expected.reports[i].forces[k].force) << i << ", " << k;
+        }
+    }
+}
+
+TEST_F(Ahead, WhoWatchesAHandSeesItsInkEveryFewStamps) {
+    set_thread_count(2);
+    Document p(model());
+    const std::vector<brush::Pose> poses = spatial_poses(stroke_at(0, DipMode::each).trace);
+    p.begin(stroke_at(0, DipMode::each));
+    std::size_t seen = 0, changed = 0;
+    p.extend(poses, [&] {
+        ++seen;
+        changed += !p.appearance().take_dirty().empty();
+    });
+    const StrokeReport report = p.end();
+    EXPECT_GE(seen, report.stamps / 8 - 1);  // 8 stamps are a batch; the last poses come with the end
+    EXPECT_GE(changed, seen / 2);
 }
 
 }  // namespace

@@ -1,18 +1,12 @@
 #include "app/paint/stroke_painter.h"
 
 #include <algorithm>
-#include <span>
 #include <utility>
 
 #include "stroke/document/fit.h"
 #include "stroke/drawing/copies.h"
 
 namespace tuft::app {
-namespace {
-
-constexpr std::size_t kPosesAtOnce = 8;  // between two looks at the clock
-
-}  // namespace
 
 void StrokePainter::begin(const BeginStroke& command) {
     cancel();
@@ -57,11 +51,7 @@ void StrokePainter::load_tip(const BeginStroke& command, std::size_t& made) {
 
 void StrokePainter::extend(const ExtendStroke& command) {
     if (!context_.work.document->session()) return;
-    const std::span<const brush::Pose> poses(command.poses);
-    for (std::size_t i = 0; i < poses.size(); i += kPosesAtOnce) {
-        context_.work.document->extend(poses.subspan(i, std::min(kPosesAtOnce, poses.size() - i)));
-        context_.publisher.publish_if_due();
-    }
+    context_.work.document->extend(command.poses, [this] { context_.publisher.publish_if_due(); });
     context_.publisher.set_done(command.requested_at);
     context_.publisher.publish();
 }

@@ -103,7 +103,8 @@ class Document {
     /// The same in pieces for a hand in space: `begin`, any number of `extend`, then `end` or `cancel`, which takes the
     /// stroke back. `entry` holds a `PaintStroke`, whose samples may be empty.
     void begin(JournalEntry entry);
-    void extend(std::span<const brush::Pose> poses);
+    /// `painted`: called after every few stamps; it may read the document.
+    void extend(std::span<const brush::Pose> poses, const std::function<void()>& painted = {});
     StrokeReport end();
     void cancel();
     /// The stroke begun; null between strokes.

@@ -65,11 +65,12 @@ void Document::begin(JournalEntry entry) {
     check_layer(entry);
     cancel();
     session_ = make_session(std::get<PaintStroke>(entry.content));
+    if (thread_count() > 1) session_->forecast_hand();
     open_ = std::move(entry);
 }
 
-void Document::extend(std::span<const brush::Pose> poses) {
-    session_->extend(poses);
+void Document::extend(std::span<const brush::Pose> poses, const std::function<void()>& painted) {
+    session_->extend(poses, painted);
 }
 
 StrokeReport Document::end() {

@@ -9,6 +9,7 @@ namespace tuft::stroke {
 namespace {
 
 constexpr std::size_t kPartPoses = 32;    // a hundredth of a second of bending
+constexpr std::size_t kHandPoses = 4;     // of a hand that paints: its ink waits for the first part
 constexpr std::size_t kPartsAhead = 3;    // bound the poses in memory
 constexpr std::size_t kClosedAtOnce = 8;  // poses whose footprints are computed in parallel, as a batch of stamps is
 
@@ -16,36 +17,43 @@ bool same(const brush::Pose& a, const brush::Pose& b) {
     return a.position == b.position && a.rotation == b.rotation && a.time == b.time;
 }
 
-double seconds_between(std::span<const brush::Pose> path, std::size_t i) {
-    return i > 0 ? path[i].time - path[i - 1].time : 0.0;
-}
-
 }  // namespace
 
 StrokeForecast::StrokeForecast(brush::Tuft tuft, std::vector<brush::Pose> path, const mesh::SurfaceQuery& surface,
                                const Options& options)
-    : surface_(surface),
-      options_(options),
-      path_(std::move(path)),
-      parts_((path_.size() + kPartPoses - 1) / kPartPoses),
-      hair_(std::move(tuft)) {
+    : surface_(surface), options_(options), path_(std::move(path)), hair_(std::move(tuft)) {
     hair_.wetness = 1;
     hair_.ink_left = kWetFullness;
     hair_.bundles = {};  // no part of bending
-    if (!parts_.empty()) parts_.front().hair = hair_;
+    cut_path(kPartPoses);
+}
+
+void StrokeForecast::cut_path(std::size_t part_poses) {
+    part_poses_ = part_poses;
+    parts_.clear();
+    parts_.resize((path_.size() + part_poses - 1) / part_poses);
+    next_ = 0;
+    if (parts_.empty()) return;
+    parts_.front().hair = hair_;
+    parts_.front().memory = memory_;
+}
+
+double StrokeForecast::seconds_before(std::size_t i) const {
+    if (i == 0 && !earlier_) return 0;
+    return path_[i].time - (i > 0 ? path_[i - 1].time : *earlier_);
 }
 
 // Hair that painted before comes through the air, as in a session.
 contact::Result StrokeForecast::bend(brush::Tuft& hair, contact::Memory& memory, std::size_t i) const {
-    if (i == 0 && hair.posed) brush::step(hair, path_[i], {}, 0);
-    return contact::step(hair, path_[i], surface_, memory, seconds_between(path_, i), options_.contact);
+    if (i == 0 && !earlier_ && hair.posed) brush::step(hair, path_[i], {}, 0);
+    return contact::step(hair, path_[i], surface_, memory, seconds_before(i), options_.contact);
 }
 
 void StrokeForecast::compute_part(std::size_t k, bool closes) {
     if (hair_.split) return;
     Part& part = parts_[k];
     if (k > 0) part.hair = hair_, part.memory = memory_;
-    const std::size_t begin = k * kPartPoses, end = std::min(begin + kPartPoses, path_.size());
+    const std::size_t begin = k * part_poses_, end = std::min(begin + part_poses_, path_.size());
     part.poses.reserve(end - begin);
     for (std::size_t i = begin; i < end; ++i) {
         PoseForecast forecast{.pose = path_[i], .contact = {}, .hair = {}};
@@ -69,6 +77,18 @@ void StrokeForecast::compute_ahead() {
     ahead_->begin();
 }
 
+void StrokeForecast::follow(std::vector<brush::Pose> poses) {
+    if (poses.empty() || hair_.split) return;
+    ahead_.reset();
+    if (!path_.empty()) earlier_ = path_.back().time;
+    path_ = std::move(poses);
+    cut_path(kHandPoses);
+    if (parts_.size() == 1) return compute_part(0, false);
+    ahead_ =
+        std::make_unique<WorkAhead>(parts_.size(), parts_.size(), [this](std::size_t k) { compute_part(k, false); });
+    ahead_->begin();
+}
+
 // Footprints do not depend on each other: the threads that deposit compute them.
 void StrokeForecast::close_together(Part& part, std::size_t from) const {
     const std::size_t n = std::min(kClosedAtOnce, part.poses.size() - from);
@@ -82,7 +102,7 @@ void StrokeForecast::close_together(Part& part, std::size_t from) const {
 
 PoseForecast* StrokeForecast::next(const brush::Pose& pose, const brush::Tuft& hair, bool closes) {
     if (next_ == path_.size() || hair.wetness != 1) return nullptr;
-    const std::size_t k = next_ / kPartPoses, at = next_ % kPartPoses;
+    const std::size_t k = next_ / part_poses_, at = next_ % part_poses_;
     if (ahead_) ahead_->wait(k);
     Part& part = parts_[k];
     if (at >= part.poses.size() || !same(part.poses[at].pose, pose)) return nullptr;
@@ -99,10 +119,10 @@ void StrokeForecast::catch_up(brush::Tuft& hair, contact::Memory& memory) {
         bent = std::move(hair_);
         memory = memory_;
     } else {
-        const std::size_t k = next_ > 0 ? (next_ - 1) / kPartPoses : 0;  // computed, and the last not released
+        const std::size_t k = next_ > 0 ? (next_ - 1) / part_poses_ : 0;  // computed, and the last not released
         bent = std::move(parts_[k].hair);
         memory = parts_[k].memory;
-        for (std::size_t i = k * kPartPoses; i < next_; ++i) bend(bent, memory, i);
+        for (std::size_t i = k * part_poses_; i < next_; ++i) bend(bent, memory, i);
     }
     bent.bundles = std::move(hair.bundles);
     bent.wetness = hair.wetness;

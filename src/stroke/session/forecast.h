@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,7 +13,8 @@
 /// \file
 /// Bending and contact of a stroke's hair, computed before its ink is deposited. Both do not depend on the ink of wet
 /// hair. `StrokeSession` uses a forecast as long as the hair is wet. Strokes of a batch are forecast at the same time;
-/// a stroke that is painted by itself is forecast by another thread a little ahead of its ink.
+/// a stroke that is painted by itself is forecast by another thread a little ahead of its ink, and so are the poses of
+/// a hand that paints, as far as they are known.
 namespace tuft::stroke {
 
 /// Contact and hair at one pose of a path, as the session would compute them.
@@ -46,6 +48,9 @@ class StrokeForecast {
     void compute();
     /// Instead of `compute`: lets another thread compute poses while `next` returns those before, some 100 ahead.
     void compute_ahead();
+    /// Instead of both: appends poses to the path, and lets another thread compute them all while `next` returns those
+    /// before; up to four it computes itself. Precondition: `next` has returned all poses of the path, or null.
+    void follow(std::vector<brush::Pose> poses);
 
     /// Returns the forecast of the next pose where it is valid for this pose and this hair, else null. The result may
     /// be moved from; it is valid until the next call. `closes`: the footprint of wet hair will be needed.
@@ -61,13 +66,17 @@ class StrokeForecast {
         contact::Memory memory;
         std::vector<PoseForecast> poses;  ///< up to where the tuft splits
     };
+    double seconds_before(std::size_t i) const;
     contact::Result bend(brush::Tuft& hair, contact::Memory& memory, std::size_t i) const;
+    void cut_path(std::size_t part_poses);
     void compute_part(std::size_t k, bool closes);
     void close_together(Part& part, std::size_t from) const;
 
     const mesh::SurfaceQuery& surface_;
     Options options_;
-    std::vector<brush::Pose> path_;
+    std::vector<brush::Pose> path_;  ///< of a hand that paints: the poses appended last
+    std::optional<double> earlier_;  ///< time of the pose before the path; none: the path begins the stroke
+    std::size_t part_poses_ = 0;     ///< of every part but the last
     std::vector<Part> parts_;
     std::size_t next_ = 0;
     brush::Tuft hair_;  ///< after the poses computed so far

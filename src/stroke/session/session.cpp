@@ -6,6 +6,7 @@
 
 #include "core/ease.h"
 #include "ink/film/paste.h"
+#include "stroke/deposit/stamp_batch.h"
 #include "stroke/placement/placement.h"
 
 namespace tuft::stroke {
@@ -83,24 +84,34 @@ std::unique_ptr<DepositModel> StrokeSession::make_deposit() {
     return mixed ? make_mixed_deposit(target_, options) : make_still_deposit(target_, options);
 }
 
-void StrokeSession::extend(std::span<const brush::Pose> poses) {
+void StrokeSession::forecast_hand() {
+    contact_.forecast = forecast({});
+    contact_.follows = true;
+}
+
+void StrokeSession::extend(std::span<const brush::Pose> poses, const std::function<void()>& painted) {
     StrokeSamples cluster{.flat = false};
     for (const brush::Pose& pose : poses)
         cluster.samples.push_back({.time = pose.time, .position = pose.position, .rotation = pose.rotation});
     std::vector<StrokeSample>& samples = input_.stroke.trace.samples;
     samples.insert(samples.end(), cluster.samples.begin(), cluster.samples.end());
-    advance(spatial_poses(cluster));  // as a replay will see them, to the bit
+    resample(spatial_poses(cluster));  // as a replay will see them, to the bit
+    paint_poses(painted);
 }
 
 void StrokeSession::advance(std::span<const brush::Pose> poses, double done) {
+    resample(poses);
+    paint_poses();
+    progress_.done = done;
+}
+
+void StrokeSession::resample(std::span<const brush::Pose> poses) {
     for (const brush::Pose& pose : poses) {
         ++report_.samples;
         const brush::Pose steadied = next_pose(path_, pose);
         if (input_.record_forces) forces_.samples.push_back(steadied);
         path_.resampler.push(steadied, path_.poses);
     }
-    paint_poses();
-    progress_.done = done;
 }
 
 // A flat stroke is steadied before its path is prepared.
@@ -108,8 +119,12 @@ brush::Pose StrokeSession::next_pose(Path& path, const brush::Pose& pose) const 
     return input_.stroke.trace.flat ? pose : steady(path.steady, pose, input_.stroke.settings);
 }
 
-void StrokeSession::paint_poses() {
-    for (const brush::Pose& pose : path_.poses) step(pose);
+void StrokeSession::paint_poses(const std::function<void()>& painted) {
+    if (contact_.forecast && contact_.follows) contact_.forecast->follow(path_.poses);
+    for (std::size_t i = 0; i < path_.poses.size(); ++i) {
+        step(path_.poses[i]);
+        if (painted && (i + 1) % StampBatch::kStamps == 0) painted();
+    }
     path_.poses.clear();
 }
 

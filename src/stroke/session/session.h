@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -66,14 +67,18 @@ class StrokeSession {
     std::unique_ptr<StrokeForecast> forecast(std::span<const brush::Pose> poses) const;
     /// Takes a forecast of the poses that come. The bits are the same as without.
     void use(std::unique_ptr<StrokeForecast> forecast) { contact_.forecast = std::move(forecast); }
+    /// Lets another thread compute bending and contact of the poses that come by `extend`, ahead of their ink. The bits
+    /// are the same as without. Before the first `extend`.
+    void forecast_hand();
     /// Paints the next poses. `done`: part of the stroke to be reported, 0–1.
     void advance(std::span<const brush::Pose> poses, double done = 0);
     /// Sets the part of the path that comes next, for the plan of tiles.
     void set_part(std::uint32_t part) { target_.set_part(part); }
     /// Declares that the first `poses` set the brush down; the stroke's own samples come after them.
     void begin_with_set_down(std::size_t poses) { forces_.before_first = poses; }
-    /// Appends poses of a hand in space to the stroke's samples and paints them.
-    void extend(std::span<const brush::Pose> poses);
+    /// Appends poses of a hand in space to the stroke's samples and paints them. Calls `painted` after every few
+    /// stamps.
+    void extend(std::span<const brush::Pose> poses, const std::function<void()>& painted = {});
     /// Paints the remaining poses and ends the stroke.
     SessionResult finish();
     /// Returns the tiles written to so far as they were before, ascending by slot, to take the stroke back.
@@ -104,7 +109,8 @@ class StrokeSession {
         contact::Options options;
         Vec3 device_force{0};
         std::unique_ptr<StrokeForecast> forecast;
-        HairShape hair;  // at the last pose that touched
+        bool follows = false;  // the forecast gets the poses as they come
+        HairShape hair;        // at the last pose that touched
         LastHair last;
     };
     /// What is recorded of the forces, where it is asked for.
@@ -124,7 +130,8 @@ class StrokeSession {
     std::unique_ptr<DepositModel> make_deposit();
     std::vector<ForceRecord> forces_at_samples() const;
     brush::Pose next_pose(Path& path, const brush::Pose& pose) const;
-    void paint_poses();
+    void resample(std::span<const brush::Pose> poses);
+    void paint_poses(const std::function<void()>& painted = {});
     void step(const brush::Pose& pose);
     contact::Result bend_on_surface(const brush::Pose& pose, double dt);
     contact::Result next_contact(const brush::Pose& pose, double dt);
