@@ -80,7 +80,7 @@ class Camera {
     /// Returns the frame of the finished work, in its own light: the picture of `tuft render`.
     const render::Image& shoot_finished() {
         part_ = 1;
-        compose_all();
+        shown_ = make_look(model_, &painting_, "", film_.replay.view.raking);
         series_.reset();
         return draw(nullptr);
     }
@@ -132,7 +132,7 @@ class Camera {
     bool needs_light() const {
         constexpr double kMost = 0.02;  // mean reflectance, of the tiles of charts
         const double channels = 3.0 * atlas::kTileTexels * static_cast<double>(model_.texels.n_slots());
-        return !series_ || difference_ > kMost * channels;
+        return !series_ || surface_ != painting_.parts().surface() || difference_ > kMost * channels;
     }
 
     void find_light() {
@@ -141,8 +141,9 @@ class Camera {
         lit_.point_to_maps(model_);
         of_tile_.assign(model_.texels.slot_of_tile.size(), 0);
         difference_ = 0;
+        surface_ = painting_.parts().surface();
         series_ = std::make_unique<render::PictureSeries>(
-            *model_.mesh, *model_.query, lit_.appearance, options_,
+            *model_.mesh, *surface_, lit_.appearance, options_,
             stands_after() ? render::PictureSeries::Length::many : render::PictureSeries::Length::one);
     }
 
@@ -166,7 +167,7 @@ class Camera {
         if (!session || film_.no_brush) return picture;
         frame_ = picture;
         const brush::Tuft& tuft = session->brush();
-        render::draw_brush_in_picture(frame_, series_->camera(), *model_.query, tuft, session->tuft(),
+        render::draw_brush_in_picture(frame_, series_->camera(), *surface_, tuft, session->tuft(),
                                       kHolder * tuft.preset.length);
         return frame_;
     }
@@ -182,6 +183,7 @@ class Camera {
     std::vector<std::uint32_t> changed_;  ///< tiles, since the last picture
     std::vector<double> of_tile_;         ///< difference of both, by tile
     double difference_ = 0;
+    std::shared_ptr<const mesh::SurfaceQuery> surface_;  ///< of the visible parts, which `series_` draws
     std::unique_ptr<render::PictureSeries> series_;
     render::Image frame_;
 };

@@ -272,15 +272,21 @@ PictureLook make_look(const stroke::Model& model, const stroke::Document* painti
     appearance.body_colour = Vec3f(substrate.reflectance[0], substrate.reflectance[1], substrate.reflectance[2]);
     ink::Stack bare{std::vector<ink::LayerView>{}};
     if (material.empty()) bare.base_colour = &model.base_colour;
-    const ink::Stack stack = painting ? painting->appearance().stack() : bare;
+    ink::Stack stack = painting ? painting->appearance().stack() : bare;
+    if (!material.empty()) stack.substrates = nullptr;
     appearance.vertex_colours = false;
-    if (!stack.layers.empty() || stack.has_base_colour()) {
+    if (!stack.layers.empty() || stack.has_base_colour() || stack.substrates) {
         const ink::ComposeOptions compose = painting ? painting->appearance().compose_options() : ink::ComposeOptions{};
         look.colour = ink::compose_linear(stack, model.texels, substrate, compose);
         if (raking) {
             look.height = ink::compose_height(stack, model.texels, compose);
             for (float& h : look.height.texels) h *= 1e-6f;
         }
+        if (stack.substrates) {
+            appearance.finish = render::Finish::porcelain;
+            look.roughness = ink::compose_roughness(stack, model.texels, substrate, compose);
+        }
+        look.transmission = ink::compose_transmission8(stack, model.texels, substrate, compose);
         look.point_to_maps(model);
     }
     return look;
@@ -292,6 +298,7 @@ void PictureLook::point_to_maps(const stroke::Model& model) {
     appearance.maps.corner_uvs = model.atlas.corner_uvs;
     appearance.maps.base_colour = std::span(first, std::size_t{colour.size} * colour.size);
     appearance.maps.height = height.texels;
+    appearance.maps.roughness = roughness.texels;
 }
 
 render::PictureOptions picture_options(const View& v, const stroke::Model& model) {
@@ -310,7 +317,15 @@ render::Image draw_picture(const PictureRequest& request, Console& console) {
     render::PictureOptions options = picture_options(v, model);
     options.progress = console.progress();
     if (count > 1) options = render::turntable_frame(options, frame, count);
-    return render::render_picture(*model.mesh, *model.query, look.appearance, options);
+    if (!painting) return render::render_picture(*model.mesh, *model.query, look.appearance, options);
+    render::Glass glass{.triangles = {},
+                        .hidden = painting->parts().hidden_triangles(),
+                        .size = look.transmission.size,
+                        .transmission = look.transmission.texels};
+    const ink::Substrate& substrate = painting->appearance().substrate();
+    if (!glass.transmission.empty())
+        for (const float part : painting->parts().transmission(substrate)) glass.triangles.push_back(part > 0);
+    return render::render_with_glass(*model.mesh, *painting->parts().surface(), look.appearance, glass, options);
 }
 
 void check_outputs(const Outputs& o) {
@@ -330,6 +345,8 @@ void write_outputs(const Outputs& o, const stroke::Document& painting, Console& 
             io::export_model(o.exported, *model.mesh, model.atlas, maps,
                              {.frame = o.frame,
                               .painted = io::painted_parts(shown.stack(), *model.mesh, model.atlas, model.texels),
+                              .transmits = io::transmitting_parts(shown.stack(), shown.substrate(), *model.mesh,
+                                                                  model.atlas, model.texels),
                               .progress = console.progress()});
         for (const Message& note : notes) console.note(note.text());
     }

@@ -11,6 +11,7 @@
 #include "cli/console.h"
 #include "io/model/read_import.h"
 #include "io/project/project.h"
+#include "render/picture/glass.h"
 #include "render/picture/picture.h"
 #include "stroke/document/document.h"
 #include "stroke/journal/entries.h"
@@ -72,12 +73,14 @@ void write_outputs(const Outputs& outputs, const stroke::Document& painting, Con
 struct PictureLook {
     render::Appearance appearance;  ///< its maps are those below
     ink::AtlasMap<float> colour, height;
+    ink::AtlasMap<float> roughness;  ///< of parts with substrates of their own; empty: that of the finish
+    ink::AtlasMap<std::uint8_t> transmission = {};  ///< empty: no part is of glass
 
     /// Sets the maps of `appearance` after they were made or replaced.
     void point_to_maps(const stroke::Model& model);
 };
 /// Returns what is painted on a model, or without `painting` the bare one, with a height map where `raking`.
-/// `material`: of the bare surface; empty: the painting's, else porcelain.
+/// `material`: of the whole bare surface; empty: the painting's and its parts', else porcelain.
 PictureLook make_look(const stroke::Model& model, const stroke::Document* painting, const std::string& material,
                       bool raking);
 /// Returns size, camera and lights of the arguments.

@@ -97,6 +97,10 @@ struct ShowMask {
 struct ChangeLayers {
     stroke::LayerEdit edit;
 };
+/// Shows, hides, locks parts of the model or gives them a substrate.
+struct ChangeParts {
+    stroke::PartEdit edit;
+};
 /// Sets view and size of the layers' thumbnails.
 struct LookFrom {
     render::GlCamera camera;
@@ -161,11 +165,11 @@ struct ShowSnapshot {
 struct RestoreSnapshot {
     std::string id;
 };
-using Command =
-    std::variant<AttachToProject, DetachFromProject, TakeSnapshot, RenameSnapshot, ShowSnapshot, RestoreSnapshot,
-                 BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing, ActOnBrush, UndoStroke, RedoStroke,
-                 SaveProject, RetrySaving, ExportModel, EditStrokes, HighlightStrokes, FillModel, ChangeLayers,
-                 SendTexture, PickInk, TakeInk, RecolourInk, PreviewSubstrate, ChangeMasks, ShowMask, LookFrom>;
+using Command = std::variant<AttachToProject, DetachFromProject, TakeSnapshot, RenameSnapshot, ShowSnapshot,
+                             RestoreSnapshot, BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing,
+                             ActOnBrush, UndoStroke, RedoStroke, SaveProject, RetrySaving, ExportModel, EditStrokes,
+                             HighlightStrokes, FillModel, ChangeLayers, SendTexture, PickInk, TakeInk, RecolourInk,
+                             PreviewSubstrate, ChangeMasks, ChangeParts, ShowMask, LookFrom>;
 
 /// Returns true when the command changes the work. It is refused while a project is only viewed.
 bool changes_work(const Command& command);
