@@ -37,6 +37,7 @@ Model make_model(bool with_pane) {
     if (with_pane) add_quads(soup, -0.5 * kSide, 0.5 * kSide, kPane, 2);
     ModelOptions options;
     options.repair.metres_per_unit = 1;
+    options.repair.sides = mesh::OpenSides::file;  // under the pane a sheet sees more of the open below it
     options.unwrap.size = with_pane ? 1024 : 724;  // about the same texels
     return prepare_model(std::move(soup), options);
 }
