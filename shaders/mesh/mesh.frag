@@ -14,6 +14,7 @@ uniform int u_shading;               // 0 glaze, 1 clay, 2 flat colour, 3 height
 uniform float u_atlas_size;          // texels per side
 uniform float u_relief;              // times that thin ink is shown as high as it is
 uniform float u_height_range;        // micrometres at the ramp's end
+uniform float u_transmission;        // part of the light that passes where there is no ink; 0: opaque
 out vec4 f_colour;
 
 vec3 relief_normal(vec3 n, float height) {
@@ -50,6 +51,9 @@ void main() {
     if (u_relief > 0.0) n = relief_normal(n, shown_height(ink_height(texel.a)));
     float fresnel = u_shading == 1 ? 0.0 : mix(coat_fresnel(dot(n, to_eye)), 0.02, smoothstep(0.4, 0.8, u_roughness));
     vec3 light = (1.0 - fresnel) * base * irradiance(n);
-    if (fresnel > 0.0) light += fresnel * surroundings(reflect(-to_eye, n), u_roughness);
-    f_colour = vec4(encode_srgb(light), 1.0);
+    // Ink hides by exp(-4) per film unit of 2.5 micrometres. The alpha is that of premultiplied colour.
+    float passes = u_transmission > 0.0 ? u_transmission * (1.0 - fresnel) * exp(-ink_height(texel.a) / 0.625) : 0.0;
+    light *= 1.0 - passes;
+    if (fresnel > 0.0) light += fresnel * surroundings(reflect(-to_eye, n), u_transmission > 0.0 ? 0.05 : u_roughness);
+    f_colour = vec4(encode_srgb(light), 1.0 - passes);
 }

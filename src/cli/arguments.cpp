@@ -189,6 +189,23 @@ CLI::App* add_layer(CLI::App& app, LayerWork& layer) {
     return command;
 }
 
+CLI::App* add_part(CLI::App& app, PartWork& part) {
+    auto* command =
+        app.add_subcommand("part", "list and change the parts of a project's model: the groups of its file");
+    command->add_option("PROJECT", part.project, "project file (.tuft)")->required();
+    command
+        ->add_option("WHAT", part.what,
+                     "list, hide, show, isolate (show these alone), lock, unlock or substrate. Hidden parts are as if "
+                     "they were not there: strokes go through to what lies behind them. Locked parts are touched and "
+                     "get no ink")
+        ->check(CLI::IsMember({"list", "hide", "show", "isolate", "lock", "unlock", "substrate"}));
+    command->add_option("NAME", part.names,
+                        "names of parts (show, lock and unlock: all without any); with substrate PART=NAME, where NAME "
+                        "is that of a substrate, a .toml file, or none for the project's");
+    add_common(command, part.common);
+    return command;
+}
+
 CLI::App* add_fill(CLI::App& app, FillWork& fill) {
     auto* command =
         app.add_subcommand("fill", "cover a whole project, a part or a chart of it with ink, even or graded");
@@ -364,9 +381,10 @@ std::vector<Entry> add_commands(CLI::App& app) {
         make_entry(app, add_unwrap),   make_entry(app, add_decimate), make_entry(app, add_replay),
         make_entry(app, add_export),   make_entry(app, add_decals),   make_entry(app, add_trajectory),
         make_entry(app, add_variants), make_entry(app, add_run_task), make_entry(app, add_layer),
-        make_entry(app, add_fill),     make_entry(app, add_mask),     make_entry(app, add_render),
-        make_entry(app, add_film),     make_entry(app, add_brush),    make_entry(app, add_bias),
-        make_entry(app, add_ink),      make_entry(app, add_bench),    make_entry(app, add_device),
+        make_entry(app, add_part),     make_entry(app, add_fill),     make_entry(app, add_mask),
+        make_entry(app, add_render),   make_entry(app, add_film),     make_entry(app, add_brush),
+        make_entry(app, add_bias),     make_entry(app, add_ink),      make_entry(app, add_bench),
+        make_entry(app, add_device),
     };
 }
 

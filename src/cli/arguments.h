@@ -61,6 +61,12 @@ struct View {
     std::vector<double> target_mm;  ///< [3], or empty: the middle of the model
 };
 
+/// States of parts: names of the mesh's groups.
+struct PartChoice {
+    std::vector<std::string> hide, only, lock;
+    std::vector<std::string> substrates;  ///< PART=NAME
+};
+
 /// `tuft paint MODEL STROKES...`
 struct Paint {
     std::filesystem::path model;
@@ -86,6 +92,7 @@ struct Paint {
     std::vector<double> place_mm;        ///< [3] position of flat strokes, or empty
     std::string on;                      ///< side of the model (stroke::side_name) for flat strokes, or empty
     std::vector<double> read_from;       ///< [3] direction towards the reader of a drawing, or empty
+    std::string snap;                    ///< x, y or z: the place lies in the model's middle plane across it; or empty
     double place_width_mm = 0;           ///< width of the whole drawing; 0: as in the file
     std::string mapping;                 ///< drape, wrap, project; empty: see place_strokes
     double place_turn_deg = 0;           ///< anticlockwise, seen from outside the surface
@@ -104,6 +111,7 @@ struct Paint {
     bool auto_texel = false;             ///< texels as small as the drawing's detail needs
     bool fit_brush = false;              ///< scales `brush` to the line widths of a drawing
     Surface surface;
+    PartChoice parts;
     std::filesystem::path project, exported, preview, forces;
     View view;
     Common common;
@@ -168,6 +176,14 @@ struct Export {
 struct LayerWork {
     std::filesystem::path project;
     std::string what, name, value;
+    Common common;
+};
+
+/// `tuft part PROJECT WHAT [NAME...]`
+struct PartWork {
+    std::filesystem::path project;
+    std::string what = "list";
+    std::vector<std::string> names;
     Common common;
 };
 
@@ -344,8 +360,8 @@ struct RunTask {
 };
 
 using Command = std::variant<Paint, Write, Inspect, Unwrap, Decimate, Replay, Export, Render, Brush, BiasCorrection,
-                             Bench, LayerWork, FillWork, MaskWork, InkWork, DeviceWork, Decals, TrajectoryWork, Film,
-                             VariantsWork, RunTask>;
+                             Bench, LayerWork, PartWork, FillWork, MaskWork, InkWork, DeviceWork, Decals,
+                             TrajectoryWork, Film, VariantsWork, RunTask>;
 
 /// Parses the command line into `command`. Returns false, with the exit status in `status`, when there is nothing to
 /// run: after printing help or version (0), and after one line on standard error for a wrong command line (2). Main

@@ -21,6 +21,7 @@ int run(const Brush& arguments);
 int run(const BiasCorrection& arguments);
 int run(const Bench& arguments);
 int run(const LayerWork& arguments);
+int run(const PartWork& arguments);
 int run(const FillWork& arguments);
 int run(const MaskWork& arguments);
 int run(const InkWork& arguments);

@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "cli/drawing.h"
 #include "cli/model_path.h"
+#include "cli/parts.h"
 #include "cli/steps.h"
 #include "core/system/files.h"
 #include "core/text/counted.h"
@@ -301,12 +302,20 @@ int paint(const Paint& a, const StrokeSource& source) {
     if (const double texel = a.auto_texel ? texel_for_detail(strokes, a) : 0; texel > 0)
         surface.texel_size_mm = texel / kMillimetre;
     Loaded loaded = before ? Loaded{std::move(before->model), before->frame} : load_model(a.model, surface, console);
-    const stroke::Model model = std::move(loaded.model);
+    stroke::Model model = std::move(loaded.model);
     outputs.frame = loaded.frame;
+    const std::vector<stroke::JournalEntry> done =
+        before ? before->file.strokes() : std::vector<stroke::JournalEntry>();
+    stroke::PartTable parts = stroke::parts_after(done);
+    const std::vector<stroke::PartEdit> edits = part_edits(a.parts, parts, *model.mesh);
+    for (const stroke::PartEdit& edit : edits) stroke::apply(parts, edit);
+    std::optional<VisibleParts> visible(std::in_place, model, parts);
     const std::optional<PlacedDrawing> placed = source.place(strokes, model, console);
     if (!a.view.directed) look_at_strokes(outputs.view, strokes, model);
     note_detail(strokes, model.atlas.texel_size, console);
     add_copies(strokes, model, a);
+    visible.reset();
+    strokes.insert(strokes.begin(), edits.begin(), edits.end());
 
     stroke::Document painting(model, {.substrate = a.surface.substrate, .record_forces = !a.forces.empty()});
     if (before) {

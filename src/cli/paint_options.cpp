@@ -5,6 +5,7 @@
 #include "brush/preset/preset.h"
 #include "cli/drawing_arguments.h"
 #include "cli/options.h"
+#include "cli/parts.h"
 #include "core/error.h"
 #include "core/text/text.h"
 #include "stroke/drawing/free_area.h"
@@ -27,7 +28,24 @@ void add_materials(CLI::App* p, Paint& paint) {
         "--erase", [&paint] { paint.erases = true; },
         "the strokes take ink away, wet and dry, instead of leaving some");
     p->add_option("--layer", paint.layer, "layer for strokes that name none; it is made when there is none yet");
-    p->add_option("--substrate", paint.surface.substrate, "what the model is made of: porcelain, bisque, clay, ...");
+    p->add_option_function<std::vector<std::string>>(
+         "--substrate",
+         [&paint](const std::vector<std::string>& values) {
+             for (const std::string& value : values) take_substrate(paint, value);
+         },
+         "what the model is made of: porcelain, bisque, clay, ...; PART=NAME: what a part of it is made of, more by "
+         "another --substrate")
+        ->allow_extra_args(false);
+    p->add_option("--hide-parts", paint.parts.hide,
+                  "parts (groups of the model's file) that are as if they were not there: NAME,...")
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    p->add_option("--only-parts", paint.parts.only, "hide all parts but these: NAME,...")
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    p->add_option("--lock-parts", paint.parts.lock, "parts that are touched and get no ink: NAME,...")
+        ->delimiter(',')
+        ->allow_extra_args(false);
 }
 
 /// Models of tuft, footprint and contact.
@@ -165,6 +183,11 @@ void add_mapping(CLI::App* p, Paint& paint) {
                   "draws what is placed this wide, all stroke files together (default: as written)")
         ->check(number_in(kLeastTexelMm, kFarthestMm, "POSITIVE"))
         ->type_name("MM");
+    p->add_option(
+         "--snap", paint.snap,
+         "moves the middle of the drawing into the middle plane of the model across this axis, such as that of "
+         "its symmetry")
+        ->check(CLI::IsMember({"x", "y", "z"}));
     p->add_option("--place-turn", paint.place_turn_deg, "turns it anticlockwise by so many degrees")
         ->check(number_in(-360.0, 360.0))
         ->type_name("DEG");

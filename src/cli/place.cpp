@@ -13,6 +13,7 @@
 #include "core/text/units.h"
 #include "stroke/drawing/drawing.h"
 #include "stroke/drawing/free_area.h"
+#include "stroke/placement/snap.h"
 
 namespace tuft::cli {
 
@@ -87,6 +88,19 @@ Spot free_spot(const stroke::Model& model, const Paint& a, const Vec2& size, dou
     return {free->at, free->normal};
 }
 
+/// In the middle plane of the model, near the spot.
+Spot snapped_spot(const stroke::Model& model, const Paint& a, const Spot& spot) {
+    if (a.snap.empty()) return spot;
+    const Box& box = model.mesh->bounds;
+    stroke::SnapPlane plane{.through = box.centre(), .normal = Vec3(0)};
+    plane.normal[a.snap[0] - 'x'] = 1;
+    const auto at = stroke::surface_point_in_plane(*model.query, spot.at.position, plane, box.diagonal());
+    if (!at)
+        throw Error(a.model.string(),
+                    Message("no surface near the place lies in the middle plane across {} (see --snap)", a.snap));
+    return {*at, glm::dot(at->normal, spot.normal) < 0 ? -at->normal : at->normal};
+}
+
 /// Which way up it is read.
 stroke::Placement placement_at(const Spot& spot, const Paint& a, bool project) {
     const double turn = a.place_turn_deg * kDegree;
@@ -141,7 +155,8 @@ std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& s
     PlacedDrawing placed;
     const Vec2 size =
         std::abs(std::cos(turn)) * Vec2(area.size()) + std::abs(std::sin(turn)) * Vec2(area.size().y, area.size().x);
-    const Spot spot = a.place_mm.empty() ? free_spot(model, a, size, scale, placed) : named_spot(model, a, console);
+    const Spot spot = snapped_spot(
+        model, a, a.place_mm.empty() ? free_spot(model, a, size, scale, placed) : named_spot(model, a, console));
     placed.at = spot.at.position;
     placed.normal = spot.normal;
     placed.size = scale * Vec2(area.size());

@@ -277,7 +277,15 @@ render::Image draw_picture(const PictureRequest& request, Console& console) {
     render::PictureOptions options = picture_options(v, model);
     options.progress = console.progress();
     if (count > 1) options = render::turntable_frame(options, frame, count);
-    return render::render_picture(*model.mesh, *model.query, look.appearance, options);
+    if (!painting) return render::render_picture(*model.mesh, *model.query, look.appearance, options);
+    render::Glass glass{.triangles = {},
+                        .hidden = painting->parts().hidden_triangles(),
+                        .size = look.transmission.size,
+                        .transmission = look.transmission.texels};
+    const ink::Substrate& substrate = painting->appearance().substrate();
+    if (!glass.transmission.empty())
+        for (const float part : painting->parts().transmission(substrate)) glass.triangles.push_back(part > 0);
+    return render::render_with_glass(*model.mesh, *painting->parts().surface(), look.appearance, glass, options);
 }
 
 void check_outputs(const Outputs& o) {
@@ -297,6 +305,8 @@ void write_outputs(const Outputs& o, const stroke::Document& painting, Console& 
             io::export_model(o.exported, *model.mesh, model.atlas, maps,
                              {.frame = o.frame,
                               .painted = io::painted_parts(shown.stack(), *model.mesh, model.atlas, model.texels),
+                              .transmits = io::transmitting_parts(shown.stack(), shown.substrate(), *model.mesh,
+                                                                  model.atlas, model.texels),
                               .progress = console.progress()});
         for (const Message& note : notes) console.note(note.text());
     }

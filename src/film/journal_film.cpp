@@ -70,7 +70,7 @@ class Camera {
     /// Returns the frame of the finished work, in its own light: the picture of `tuft render`.
     const render::Image& shoot_finished() {
         part_ = 1;
-        compose_all();
+        shown_ = make_look(model_, &painting_, "", film_.picture.lights == render::Lights::raking);
         return draw_standing(true);
     }
     /// Reports; false: stop.
@@ -121,7 +121,7 @@ class Camera {
     bool paint_is_far() const {
         constexpr double kMost = 0.02;  // mean reflectance, of the tiles of charts
         const double channels = 3.0 * atlas::kTileTexels * static_cast<double>(model_.texels.n_slots());
-        return difference_ > kMost * channels;
+        return surface_ != painting_.parts().surface() || difference_ > kMost * channels;
     }
 
     /// Makes the series of one camera, or of one that moves, in the light of the paint that is seen.
@@ -133,7 +133,8 @@ class Camera {
         lit_.point_to_maps(model_);
         of_tile_.assign(model_.texels.slot_of_tile.size(), 0);
         difference_ = 0;
-        series = std::make_unique<render::PictureSeries>(*model_.mesh, *model_.query, lit_.appearance, options, length);
+        surface_ = painting_.parts().surface();
+        series = std::make_unique<render::PictureSeries>(*model_.mesh, *surface_, lit_.appearance, options, length);
     }
 
     render::View view_at(double part) const {
@@ -153,7 +154,7 @@ class Camera {
         if (!session || !film_.brush) return picture;
         frame_ = picture;
         const brush::Tuft& tuft = session->brush();
-        render::draw_brush_in_picture(frame_, (standing ? standing_ : moving_)->camera(), *model_.query, tuft,
+        render::draw_brush_in_picture(frame_, (standing ? standing_ : moving_)->camera(), *surface_, tuft,
                                       session->tuft(), kHolder * tuft.preset.length);
         return frame_;
     }
@@ -191,6 +192,7 @@ class Camera {
     std::vector<std::uint32_t> changed_;  ///< tiles, since the last picture
     std::vector<double> of_tile_;         ///< difference of both, by tile
     double difference_ = 0;
+    std::shared_ptr<const mesh::SurfaceQuery> surface_;  ///< of the visible parts, which the series draw
     std::unique_ptr<render::PictureSeries> standing_, moving_;
     render::Image frame_;
 };

@@ -15,15 +15,21 @@ PictureLook make_look(const stroke::Model& model, const stroke::Document* painti
     appearance.body_colour = Vec3f(substrate.reflectance[0], substrate.reflectance[1], substrate.reflectance[2]);
     ink::Stack bare{std::vector<ink::LayerView>{}};
     if (material.empty()) bare.base_colour = &model.base_colour;
-    const ink::Stack stack = painting ? painting->appearance().stack() : bare;
+    ink::Stack stack = painting ? painting->appearance().stack() : bare;
+    if (!material.empty()) stack.substrates = nullptr;
     appearance.vertex_colours = false;
-    if (!stack.layers.empty() || stack.has_base_colour()) {
+    if (!stack.layers.empty() || stack.has_base_colour() || stack.substrates) {
         const ink::ComposeOptions compose = painting ? painting->appearance().compose_options() : ink::ComposeOptions{};
         look.colour = ink::compose_linear(stack, model.texels, substrate, compose);
         if (raking) {
             look.height = ink::compose_height(stack, model.texels, compose);
             for (float& h : look.height.texels) h *= 1e-6f;
         }
+        if (stack.substrates) {
+            appearance.finish = render::Finish::porcelain;
+            look.roughness = ink::compose_roughness(stack, model.texels, substrate, compose);
+        }
+        look.transmission = ink::compose_transmission8(stack, model.texels, substrate, compose);
         look.point_to_maps(model);
     }
     return look;
@@ -35,6 +41,7 @@ void PictureLook::point_to_maps(const stroke::Model& model) {
     appearance.maps.corner_uvs = model.atlas.corner_uvs;
     appearance.maps.base_colour = std::span(first, std::size_t{colour.size} * colour.size);
     appearance.maps.height = height.texels;
+    appearance.maps.roughness = roughness.texels;
 }
 
 }  // namespace tuft::film

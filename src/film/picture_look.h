@@ -12,12 +12,14 @@ namespace tuft::film {
 struct PictureLook {
     render::Appearance appearance;  ///< its maps are those below
     ink::AtlasMap<float> colour, height;
+    ink::AtlasMap<float> roughness;  ///< of parts with substrates of their own; empty: that of the finish
+    ink::AtlasMap<std::uint8_t> transmission = {};  ///< empty: no part is of glass
 
     /// Sets the maps of `appearance` after they were made or replaced.
     void point_to_maps(const stroke::Model& model);
 };
 /// Returns what is painted on a model, or without `painting` the bare one, with a height map where `raking`.
-/// `material`: of the bare surface; empty: the painting's, else porcelain.
+/// `material`: of the whole bare surface; empty: the painting's and its parts', else porcelain.
 PictureLook make_look(const stroke::Model& model, const stroke::Document* painting, const std::string& material,
                       bool raking);
 

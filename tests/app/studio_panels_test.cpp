@@ -234,6 +234,37 @@ TEST_F(Panels, NamesGivenInTheChineseWindowAreStoredAsInTheEnglishOne) {
     EXPECT_EQ(project["layers"][2]["name"], "Layer 2 copy");
 }
 
+// Two sheets, one over the other: hidden, locked, isolated, made of glass, undone; all of it stays in the project.
+TEST_F(Panels, PartsAreHiddenLockedAndMadeOfGlass) {
+    std::ofstream(path("m.obj")) << "o body\nv -30 -30 0\nv 30 -30 0\nv 30 30 0\nv -30 30 0\nf 1 2 3 4\n"
+                                    "o pane\nv -30 -30 4\nv 30 -30 4\nv 30 30 4\nv -30 30 4\nf 5 6 7 8\n";
+    for (const char* language : {"english", "chinese"}) {
+        const std::string project = path(std::string(language) + ".tuft");
+        const Ran ran = studio("open " + path("m.obj") +
+                                   "\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\n"
+                                   "wait-ready\nset language " +
+                                   language +
+                                   "\nwait 0.2\nclick \"fold Parts\"\nwait 0.2\n"
+                                   "click \"show part pane\"\nwait-ready\nwait 0.1\n"
+                                   "stroke 46%,50% 50%,52% 54%,50%\nwait-ready\n"
+                                   "click \"lock part body\"\nwait-ready\nwait 0.1\nclick \"part pane\"\nwait 0.1\n"
+                                   "click \"Part made of\"\nwait 0.2\nclick \"glass\"\nwait-ready\nwait 0.1\n"
+                                   "click \"Isolate\"\nwait-ready\nwait 0.1\nclick \"Show all\"\nwait-ready\n"
+                                   "save " +
+                                   project + "\nwait-ready\n",
+                               "--headless --size 1280x900");
+        ASSERT_EQ(ran.status, 0) << ran.err;
+        const nlohmann::json parts = tuft("part '" + project + "' list --json")["parts"];
+        ASSERT_EQ(parts.size(), 2u);
+        EXPECT_EQ(parts[0]["locked"], true);
+        EXPECT_EQ(parts[0]["visible"], true);
+        EXPECT_EQ(parts[1]["visible"], true);
+        EXPECT_EQ(parts[1]["substrate"], "glass");
+        const nlohmann::json entries = tuft("inspect '" + project + "' --json")["strokes"];
+        EXPECT_EQ(entries.size(), 6u) << "hide, stroke, lock, glass, isolate, show all";
+    }
+}
+
 // A CAD file states its unit, which its reader converts: there is none to choose, and none to name wrongly.
 TEST_F(Panels, ACadFileIsOpenedByItsChordAndWithoutAUnitToChoose) {
     const Ran ran = studio("open " + source_folder() +

@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "app/document/snapping.h"
 #include "app/paint/paint_thread.h"
 #include "io/strokes/inkml.h"
 #include "models.h"
@@ -43,6 +44,37 @@ TEST(Writing, LiesWithItsMiddleAtTheCursorTurnedAndScaled) {
     EXPECT_NEAR(right.x, 0.030 * std::cos(0.5), 1e-5 + kRounding);  // the walk works on single-precision vertices
     EXPECT_NEAR(right.y, -0.030 * std::sin(0.5), 1e-5 + kRounding);
     EXPECT_NEAR(glm::length(lines[1].front().position - lines[1].back().position), 0.030, 1e-5);
+}
+
+TEST(Writing, SnapsToSymmetryAndLevelWithOtherDrawings) {
+    const mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(source_folder() + "/models/sheet.ply")).mesh;
+    const mesh::SurfaceQuery query(mesh);
+    const Vec3 c = mesh.bounds.centre();
+    const stroke::Placement other{.origin = c + Vec3(0.02, 0.013, 0), .right = {1, 0, 0}, .down = {0, -1, 0}};
+    const SnapTargets targets = snap_targets({}, mesh.bounds, std::vector{other, other});
+    ASSERT_EQ(targets.placements.size(), 1u) << "each once";
+    ASSERT_EQ(targets.planes.size(), 2u) << "across x and y";
+    constexpr double kReach = 2e-3;
+    const auto at = [&](double x, double y) { return snap(query, c + Vec3(x, y, 0), targets, kReach); };
+    constexpr double kExact = 1.1e-6;  // metres, of surface_point_in_plane
+    // In the middle plane across x, and nowhere else: y stays.
+    const auto plane = at(0.0015, 0.03);
+    ASSERT_TRUE(plane);
+    EXPECT_NEAR(plane->at.position.x, c.x, kExact);
+    EXPECT_NEAR(plane->at.position.y, c.y + 0.03, kExact);
+    EXPECT_EQ(plane->guides.size(), 1u);
+    // Level with the other drawing and in the plane.
+    const auto both = at(-0.001, 0.0122);
+    ASSERT_TRUE(both);
+    EXPECT_NEAR(both->at.position.x, c.x, kExact);
+    EXPECT_NEAR(both->at.position.y, c.y + 0.013, kExact);
+    ASSERT_EQ(both->guides.size(), 2u);
+    for (const std::vector<Vec3>& guide : both->guides) EXPECT_GT(guide.size(), 10u);
+    EXPECT_FALSE(at(0.01, 0.03));
+    // The planes of the symmetry that is on, and no others.
+    const SnapTargets mirrored = snap_targets({.mirror_y = true, .centre = c + Vec3(0, 0.005, 0)}, mesh.bounds, {});
+    ASSERT_EQ(mirrored.planes.size(), 1u);
+    EXPECT_NEAR(snap(query, c + Vec3(0.001, 0.0045, 0), mirrored, kReach)->at.position.y, c.y + 0.005, kExact);
 }
 
 TEST(Writing, CharactersWithPlacesOfTheirOwnStandSideBySide) {

@@ -1,10 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "atlas/texels/texel_map.h"
 #include "core/error.h"
@@ -14,7 +16,7 @@
 #include "io/model/read_model.h"
 #include "io/project/project.h"
 #include "sample_model.h"
-#include "stroke/surface/model.h"
+#include "stroke/document/document.h"
 
 /// Objects, groups and materials of a file, through painting to the exported model.
 namespace tuft::io {
@@ -413,6 +415,54 @@ TEST(PartsOfObj, StayWithTheStatementsOfTheirMaterials) {
     for (std::size_t t = 0; t < again.mesh.n_triangles(); ++t)
         for (std::size_t c = 3 * t; c < 3 * t + 3 && again.mesh.triangle_groups[t] > 0; ++c)
             EXPECT_EQ(again.mesh.corner_uvs[c], model.mesh->corner_uvs[c]) << "without ink they lie by their own UVs";
+}
+
+// A part made of glass here lets light pass where there is no ink, under its name; the file's own glass stays as it is.
+TEST_F(Parts, OfGlassKeepTheirNamesAndGetATransmissionMap) {
+    put(folder / "truck.glb", truck_glb());
+    const stroke::Model model = model_of(read_model(folder / "truck.glb"));
+    stroke::Document painting(model);
+    const std::vector<std::string> names = stroke::part_names(*model.mesh);
+    const auto named = [&](const std::string& word) {
+        const auto at = std::ranges::find_if(names, [&](const std::string& n) { return n.find(word) != n.npos; });
+        EXPECT_NE(at, names.end()) << word;
+        return *at;
+    };
+    stroke::PartEdit edit;
+    edit.parts = {{.name = named("Chrome"), .substrate = ink::load_substrate("clay")},
+                  {.name = named("Paint"), .substrate = ink::load_substrate("glass")}};
+    painting.paint(edit);
+    const stroke::Appearance& shown = painting.appearance();
+    const ModelMaps maps = make_maps(shown.stack(), model.texels, shown.substrate());
+    ASSERT_FALSE(maps.transmission.texels.empty());
+    const ExportOptions options{
+        .painted = painted_parts(shown.stack(), *model.mesh, model.atlas, model.texels),
+        .transmits = transmitting_parts(shown.stack(), shown.substrate(), *model.mesh, model.atlas, model.texels)};
+    for (const char* file : {"out.glb", "out.gltf"}) {
+        export_model(folder / file, *model.mesh, model.atlas, maps, options);
+        const mesh::PolygonSoup again = read_model(folder / file);
+        for (const char* object : {"Body", "Wheel left", "Wheel right", "Flag"})
+            EXPECT_THAT(again.scene->parts, Contains(Field(&mesh::ScenePart::object, object)));
+    }
+    const json j = glb_json(folder / "out.glb");
+    EXPECT_THAT(names_in(j["nodes"]), IsSupersetOf({"Truck", "Body", "Axle", "Wheel left", "Wheel right", "Flag"}));
+    EXPECT_THAT(j["extensionsUsed"], Contains("KHR_materials_transmission"));
+    const json& glass = material_named(j, "decorated.glass");
+    const json& transmission = glass["extensions"]["KHR_materials_transmission"];
+    EXPECT_EQ(transmission["transmissionFactor"], 1);
+    EXPECT_EQ(j["images"][j["textures"][transmission["transmissionTexture"]["index"].get<int>()]["source"].get<int>()]
+               ["name"],
+              "transmission");
+    EXPECT_EQ(material_named(j, "decorated").count("extensions"), 0u) << "clay is opaque";
+    const json& own = material_named(j, "Glass");
+    EXPECT_EQ(own["alphaMode"], "BLEND");
+    EXPECT_EQ(own["extensions"]["KHR_materials_transmission"]["transmissionFactor"], 0.5);
+    // The map is that of bare glass on the body, 0.9, and 0 elsewhere.
+    std::set<int> values(maps.transmission.texels.begin(), maps.transmission.texels.end());
+    EXPECT_THAT(values, IsSupersetOf({0, 230}));
+    EXPECT_THAT(texts(export_model(folder / "out.obj", *model.mesh, model.atlas, maps, options)),
+                Contains(HasSubstr("are of glass; this format has no map of it")));
+    EXPECT_FALSE(fs::exists(folder / "out_transmission.png"));
 }
 
 // Groups of colours, and projects made before scenes were kept.

@@ -297,6 +297,24 @@ TEST(Project, FilmsAndLiquidComeBackWithTheTiles) {
     EXPECT_TRUE(saved->canvas.same_contents(canvas));
 }
 
+TEST(Project, PartsComeBackAndOlderProgramsDoNotReadThem) {
+    const Folder folder("project_parts");
+    Project project = Project::create(folder / "a.tuft", sample_model());
+    EXPECT_LT(project.format(), kPartsFormat) << "older programs read what they understand";
+    stroke::PartEdit edit;
+    edit.parts = {{.name = "窗", .hidden = true},
+                  {.name = "body", .locked = true, .substrate = ink::load_substrate("glass")}};
+    project.append(stroke::entry_after({}, edit));
+    EXPECT_EQ(project.format(), kPartsFormat);
+    const std::vector<stroke::JournalEntry> read = Project::open(folder / "a.tuft").strokes();
+    ASSERT_EQ(read.size(), 1u);
+    EXPECT_EQ(read[0].get<stroke::PartEdit>(), edit);
+    ProjectModel model = sample_model();
+    model.substrate = ink::substrate_toml(ink::load_substrate("glass"));
+    EXPECT_EQ(Project::create(folder / "b.tuft", model).format(), kPartsFormat)
+        << "older programs do not know the key of its transmission";
+}
+
 TEST(Project, LayersComeBackWithTheirTiles) {
     const Folder folder("project_layers");
     ink::Canvas first(20), gold(20), empty(20);

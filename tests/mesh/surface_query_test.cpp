@@ -74,6 +74,37 @@ double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
     return inside ? std::min(best, std::abs(glm::dot(p - a, n))) : best;
 }
 
+TEST(SurfaceQuery, OfSomeTrianglesIsThatOfAMeshOfThem) {
+    const TriangleMesh mesh = random_triangles(400, 11);
+    std::vector<std::uint32_t> some;
+    TriangleMesh alone = mesh;
+    alone.triangles.clear(), alone.corner_normals.clear(), alone.neighbours.clear();
+    for (std::uint32_t t = 0; t < mesh.n_triangles(); t += 3) {
+        some.push_back(t);
+        alone.triangles.push_back(mesh.triangles[t]);
+        for (std::size_t k = 0; k < 3; ++k) alone.corner_normals.push_back(mesh.corner_normals[3 * t + k]);
+    }
+    alone.neighbours.assign(3 * alone.n_triangles(), kNone);
+    const SurfaceQuery part(mesh, some), whole(alone), none(mesh, {});
+    Random random(3);
+    for (int i = 0; i < 500; ++i) {
+        const Vec3 p{random.uniform(-0.05, 0.15), random.uniform(-0.05, 0.15), random.uniform(-0.05, 0.15)};
+        const Vec3 d = glm::normalize(Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+        const auto here = part.closest_point(p), there = whole.closest_point(p);
+        ASSERT_EQ(here->triangle, some[there->triangle]);
+        ASSERT_EQ(here->position, there->position);
+        const auto hit = part.ray(p, d), same = whole.ray(p, d);
+        ASSERT_EQ(hit.has_value(), same.has_value());
+        if (hit) {
+            ASSERT_EQ(hit->triangle, some[same->triangle]);
+        }
+        const auto near = part.nearest_vertices(p, 4), also = whole.nearest_vertices(p, 4);
+        ASSERT_EQ(near.size(), also.size());
+        for (std::size_t k = 0; k < near.size(); ++k) ASSERT_EQ(near[k].index, also[k].index);
+        ASSERT_FALSE(none.closest_point(p) || none.ray(p, d) || none.occluded(p, d, 0, 1));
+    }
+}
+
 TEST(SurfaceQuery, ClosestPointMatchesBruteForce) {
     const TriangleMesh mesh = random_triangles(2000, 1);
     const SurfaceQuery query(mesh);

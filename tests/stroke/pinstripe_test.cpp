@@ -8,6 +8,7 @@
 #include "mesh/read/polygon_soup.h"
 #include "paths.h"
 #include "stroke/document/document.h"
+#include "stroke/drawing/drawing.h"
 
 /// Stripes by a sword: how even they are, measured on the texels.
 namespace tuft::stroke {
@@ -136,9 +137,8 @@ std::vector<Vec2> curve_through(const std::vector<Vec2>& keys) {
     return out;
 }
 
-/// Along the car's flank, from behind the nose over both arches.
-TEST(Pinstripe, AMetreOverTheCarsFlankIsEven) {
-    const Model car = shipped("car.ply", 8192);
+/// Points along the car's flank, from behind the nose over both arches, in a drawing at a height of 178 mm.
+std::vector<Vec2> flank_keys() {
     std::vector<Vec2> keys;
     for (const auto& [x, z] : {std::pair{470, 170},
                                {430, 181},
@@ -156,7 +156,13 @@ TEST(Pinstripe, AMetreOverTheCarsFlankIsEven) {
                                {-480, 184},
                                {-530, 168}})
         keys.push_back(kMillimetre * Vec2(x, 178 - z));
-    const std::vector<Vec2> path = curve_through(keys);
+    return keys;
+}
+
+/// Along the car's flank, from behind the nose over both arches.
+TEST(Pinstripe, AMetreOverTheCarsFlankIsEven) {
+    const Model car = shipped("car.ply", 8192);
+    const std::vector<Vec2> path = curve_through(flank_keys());
     Document painting(car);
     painting.paint(stripe(path, {{0, -0.24, 0.178}, {1, 0, 0}, {0, 0, -1}, SurfaceMapping::project}));
     const Evenness e = measure(painting, car, 10e-3, [](const Vec3& p) { return p.y < 0 ? 0.55 - p.x : -1; },
@@ -185,6 +191,102 @@ TEST(Pinstripe, ACurveOfSixtyMillimetresIsEven) {
     EXPECT_LE(e.deviation, 0.03 * e.mean);
     EXPECT_LT(e.widest, 1.15 * e.mean);
     EXPECT_GT(e.narrowest, 0.85 * e.mean);
+}
+
+/// A line as an area, `width` metres wide, along points of a drawing.
+Fill line_area(const std::vector<Vec2>& path, const Placement& place, double width) {
+    FlatArea area{.rings = {{}}, .placement = place, .low = path.front(), .high = path.front(), .stops = {}};
+    std::vector<Vec2> back;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const Vec2 ahead = glm::normalize(path[std::min(i + 1, path.size() - 1)] - path[i > 0 ? i - 1 : 0]);
+        const Vec2 across(-ahead.y, ahead.x);
+        area.rings[0].push_back(path[i] + 0.5 * width * across);
+        back.push_back(path[i] - 0.5 * width * across);
+        area.low = glm::min(area.low, path[i] - width), area.high = glm::max(area.high, path[i] + width);
+    }
+    area.rings[0].insert(area.rings[0].end(), back.rbegin(), back.rend());
+    area.stops = {{.ink = "titanium-white"}};
+    return fill_of_area(std::move(area));
+}
+
+/// A gentle S, `half` metres to both sides of the place.
+std::vector<Vec2> wave(double half, double height) {
+    std::vector<Vec2> path;
+    const int n = static_cast<int>(std::lround(2 * half / 1e-3));
+    for (int i = 0; i <= n; ++i) {
+        const double x = half * (2.0 * i / n - 1);
+        path.emplace_back(x, height * std::sin(std::numbers::pi * x / half));
+    }
+    return path;
+}
+
+/// Where the model is seen from before, at a height.
+Placement before(const Model& model, double height) {
+    const auto at = model.query->ray({0, -1, height}, {0, 1, 0});
+    return upright_placement(at->position, at->normal, 0);
+}
+
+double round_z(const Vec3& p, double radius) {
+    return radius * (std::numbers::pi + std::atan2(p.x, -p.y));
+}
+
+/// Over a ball, as curved across as along, by the blade and as an area: an S over 120° of it.
+TEST(Pinstripe, AnSOverABallIsEven) {
+    const Model ball = shipped("sphere.ply", 4096);
+    constexpr double kRadius = 50e-3;
+    Placement place = before(ball, 0);
+    place.mapping = SurfaceMapping::drape;
+    const auto along = [&](const Vec3& p) { return round_z(p, kRadius); };
+    for (const bool by_blade : {true, false}) {
+        Document painting(ball);
+        const std::vector<Vec2> path = wave(52e-3, 9e-3);
+        if (by_blade)
+            painting.paint(stripe(path, place));
+        else
+            painting.paint(line_area(path, place, 6e-3));
+        const Evenness e = measure(painting, ball, 5e-3, along);
+        record(e);
+        EXPECT_LE(e.deviation, 0.03 * e.mean) << by_blade;
+    }
+}
+
+/// Over the wall of a bowl, which narrows downwards.
+TEST(Pinstripe, AnSOverABowlIsEven) {
+    const Model bowl = shipped("bowl.ply", 4096);
+    Placement place = before(bowl, 0.5 * (bowl.mesh->bounds.lo.z + bowl.mesh->bounds.hi.z));
+    place.mapping = SurfaceMapping::drape;
+    const double radius = std::hypot(place.origin.x, place.origin.y);
+    for (const bool by_blade : {true, false}) {
+        Document painting(bowl);
+        const std::vector<Vec2> path = wave(75e-3, 8e-3);
+        if (by_blade)
+            painting.paint(stripe(path, place));
+        else
+            painting.paint(line_area(path, place, 6e-3));
+        const Evenness e = measure(painting, bowl, 5e-3, [&](const Vec3& p) { return round_z(p, radius); });
+        record(e);
+        EXPECT_LE(e.deviation, 0.03 * e.mean) << by_blade;
+    }
+}
+
+/// A line of a drawing, as an area along the flank and over both arches, draped and projected.
+TEST(Pinstripe, AMetreOfALineAsAnAreaIsEven) {
+    const Model car = shipped("car.ply", 8192);
+    const std::vector<Vec2> path = curve_through(flank_keys());
+    for (const SurfaceMapping mapping : {SurfaceMapping::project, SurfaceMapping::drape}) {
+        Placement place{{0, -0.24, 0.178}, {1, 0, 0}, {0, 0, -1}, mapping};
+        if (mapping == SurfaceMapping::drape) {
+            place = before(car, 0.178);
+            place.mapping = mapping;
+        }
+        Document painting(car);
+        painting.paint(line_area(path, place, 6e-3));
+        const Evenness e =
+            measure(painting, car, 10e-3, [](const Vec3& p) { return p.y < 0 ? 0.55 - p.x : -1; }, {35, 36, 67});
+        record(e);
+        EXPECT_GT(e.length, 0.9);
+        EXPECT_LE(e.deviation, 0.03 * e.mean) << surface_mapping_name(mapping);
+    }
 }
 
 }  // namespace

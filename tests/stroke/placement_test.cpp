@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "grids.h"
+#include "stroke/placement/snap.h"
 #include "stroke/placement/tip_lag.h"
 
 namespace tuft::stroke {
@@ -30,6 +31,26 @@ TEST(Placement, WrapAndProjectOnTheSheetAreTheIdentity) {
             EXPECT_LT(glm::length(mapped.samples[i].down - Vec3(0, -1, 0)), 1e-6);
         }
     }
+}
+
+TEST(Placement, AnchorsSnapToThePointOfTheSurfaceInAPlane) {
+    const TriangleMesh cylinder = make_cylinder();
+    const SurfaceQuery query(cylinder);
+    const double sagitta = kCylinderRadius * (1 - std::cos(pi / 180));
+    for (const double offset : {0.0, 0.01, -0.03}) {
+        const SnapPlane plane{.through = {offset, 0.3, 0.2}, .normal = {1, 0, 0}};
+        // A circle and an upright plane cross at (d, ± √(r² − d²)); the facets lie within the sagitta of the circle,
+        // and the crossing moves by that over the sine of the angle between plane and surface.
+        const double y = std::sqrt(kCylinderRadius * kCylinderRadius - offset * offset);
+        const auto at = surface_point_in_plane(query, {offset + 0.004, y, 0.02}, plane, 0.02);
+        ASSERT_TRUE(at);
+        EXPECT_NEAR(at->position.x, offset, 1e-6);
+        EXPECT_NEAR(at->position.y, y, sagitta * kCylinderRadius / y + 1e-6);
+        EXPECT_NEAR(at->position.z, 0.02, 1e-5);
+    }
+    EXPECT_FALSE(surface_point_in_plane(query, {0.05, 0, 0}, {.through = {0.06, 0, 0}, .normal = {1, 0, 0}}, 0.02));
+    EXPECT_FALSE(surface_point_in_plane(query, {0.05, 0, 0}, {.through = {0, 0, 0}, .normal = {1, 0, 0}}, 0.02))
+        << "farther than its reach";
 }
 
 TEST(Placement, WrapOnACylinderUnrollsIt) {

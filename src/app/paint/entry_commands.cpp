@@ -46,6 +46,14 @@ void change_layers(PaintContext& context, JournalEditor& journal, const ChangeLa
     journal.add({std::move(edit), std::move(label)});
 }
 
+// The label names the parts: one, or the first and an ellipsis.
+void change_parts(JournalEditor& journal, const ChangeParts& command) {
+    if (command.edit.parts.empty()) return;
+    std::string label = command.edit.parts.front().name;
+    if (command.edit.parts.size() > 1) label += " ...";
+    journal.add({command.edit, std::move(label)});
+}
+
 void change_masks(PaintContext& context, JournalEditor& journal, const ChangeMasks& command) {
     const auto entry_of = [&](const stroke::MaskEdit& edit) {
         const stroke::Mask* known = context.work.document->masks().table().find(edit.mask.id);

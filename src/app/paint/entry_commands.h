@@ -11,5 +11,6 @@ void act_on_brush(PaintContext& context, JournalEditor& journal, const ActOnBrus
 void fill_model(PaintContext& context, JournalEditor& journal, const FillModel& command);
 void change_layers(PaintContext& context, JournalEditor& journal, const ChangeLayers& command);
 void change_masks(PaintContext& context, JournalEditor& journal, const ChangeMasks& command);
+void change_parts(JournalEditor& journal, const ChangeParts& command);
 
 }  // namespace tuft::app

@@ -4,6 +4,7 @@
 #include "io/export/export_maps.h"
 #include "io/image/image.h"
 #include "io/strokes/inkml.h"
+#include "render/picture/glass.h"
 #include "render/picture/picture.h"
 #include "stroke/journal/recorded_journal.h"
 
@@ -50,6 +51,21 @@ void draw_pictures(PaintContext& context, const ExportModel& command, const stro
     appearance.maps.corner_uvs = m.atlas.corner_uvs;
     appearance.maps.base_colour =
         std::span(reinterpret_cast<const Vec3f*>(colour.texels.data()), std::size_t{colour.size} * colour.size);
+    const ink::Stack stack = painting.appearance().stack();
+    const ink::ComposeOptions compose = painting.appearance().compose_options();
+    ink::AtlasMap<float> roughness;
+    if (stack.substrates) {
+        appearance.finish = render::Finish::porcelain;
+        roughness = ink::compose_roughness(stack, m.texels, substrate, compose);
+        appearance.maps.roughness = roughness.texels;
+    }
+    const ink::AtlasMap<std::uint8_t> transmission = ink::compose_transmission8(stack, m.texels, substrate, compose);
+    render::Glass glass{.triangles = {},
+                        .hidden = painting.parts().hidden_triangles(),
+                        .size = transmission.size,
+                        .transmission = transmission.texels};
+    if (!transmission.texels.empty())
+        for (const float part : painting.parts().transmission(substrate)) glass.triangles.push_back(part > 0);
     for (int i = 0; i < command.pictures; ++i) {
         render::PictureOptions options;
         options.width = command.picture_width;
@@ -61,7 +77,8 @@ void draw_pictures(PaintContext& context, const ExportModel& command, const stro
             return shown(phase, (i + part) / command.pictures);
         };
         if (command.pictures > 1) options = render::turntable_frame(options, i, command.pictures);
-        const render::Image image = render::render_picture(*m.mesh, *m.query, appearance, options);
+        const render::Image image =
+            render::render_with_glass(*m.mesh, *painting.parts().surface(), appearance, glass, options);
         char number[16] = "";
         if (command.pictures > 1) std::snprintf(number, sizeof number, "-%03d", i);
         std::filesystem::path file = command.path;
@@ -103,11 +120,13 @@ void export_model(PaintContext& context, const ExportModel& command) {
         io::make_maps(painting->appearance().stack(), m.texels, painting->appearance().substrate(), compose);
     if (!command.height) maps.height = {};
     if (!command.orm) maps.orm = {};
-    const std::vector<Message> notes =
-        io::export_model(command.path, *m.mesh, m.atlas, maps,
-                         {.frame = context.work.frame,
-                          .painted = io::painted_parts(painting->appearance().stack(), *m.mesh, m.atlas, m.texels),
-                          .progress = context.progress("Exporting")});
+    const std::vector<Message> notes = io::export_model(
+        command.path, *m.mesh, m.atlas, maps,
+        {.frame = context.work.frame,
+         .painted = io::painted_parts(painting->appearance().stack(), *m.mesh, m.atlas, m.texels),
+         .transmits = io::transmitting_parts(painting->appearance().stack(), painting->appearance().substrate(),
+                                             *m.mesh, m.atlas, m.texels),
+         .progress = context.progress("Exporting")});
     if (command.pictures > 0) draw_pictures(context, command, *painting);
     context.outbox.report(notes.empty() ? Message("Exported {}", command.path.string())
                                         : Message("Exported {}; {}", command.path.string(), notes.front()));

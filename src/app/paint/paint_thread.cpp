@@ -22,7 +22,8 @@ PaintThread::PaintThread(PaintWork work)
       strokes_(context_),
       journal_(context_, strokes_),
       outside_(context_),
-      carried_(context_.work.autosave.attachments(io::kReferences)) {
+      carried_(context_.work.autosave.attachments(io::kReferences)),
+      part_names_(stroke::part_names(*context_.work.model->mesh)) {
     thread_ = std::thread([this] { run(); });
 }
 
@@ -50,7 +51,13 @@ Update PaintThread::take() {
     const std::size_t waiting = queue_.waiting();
     Update update = outbox_.take();
     update.status.progress.waiting = waiting;
+    surface_ = update.status.surface;
     return update;
+}
+
+std::shared_ptr<const mesh::SurfaceQuery> PaintThread::shared_surface() const {
+    if (surface_) return surface_;
+    return {std::shared_ptr<void>(), model().query.get()};
 }
 
 void PaintThread::run() {
@@ -119,6 +126,7 @@ void PaintThread::perform(Command& command) {
                           [&](FillModel& c) { fill_model(context, journal_, c); },
                           [&](ChangeLayers& c) { change_layers(context, journal_, c); },
                           [&](ChangeMasks& c) { change_masks(context, journal_, c); },
+                          [&](ChangeParts& c) { change_parts(journal_, c); },
                           [&](ShowMask& c) { show_mask(context, c); },
                           [&](PickInk& c) { pick_ink(context, c); },
                           [&](TakeInk& c) { add_ink(context, std::move(c.ink)); },

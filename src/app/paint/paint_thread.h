@@ -39,6 +39,11 @@ class PaintThread {
     void stop_long_work() { context_.stop = true; }
 
     const stroke::Model& model() const { return *context_.work.model; }  ///< never changes
+    /// Names of the model's parts.
+    const std::vector<std::string>& part_names() const { return part_names_; }
+    /// Returns the surface of the visible parts at the last `take`. The reference holds until another `take`.
+    const mesh::SurfaceQuery& surface() const { return surface_ ? *surface_ : *model().query; }
+    std::shared_ptr<const mesh::SurfaceQuery> shared_surface() const;
     const std::string& source() const { return context_.work.source; }
     const FileFrame& frame() const { return context_.work.frame; }  ///< of the model file
     /// Returns the initial texture, once.
@@ -61,6 +66,8 @@ class PaintThread {
     OutsideChanges outside_;
     CommandQueue queue_;
     std::vector<io::Attachment> carried_;
+    std::vector<std::string> part_names_;
+    std::shared_ptr<const mesh::SurfaceQuery> surface_;  ///< of the last `take`
     std::shared_future<atlas::AtlasReport> measured_;
     std::filesystem::path spared_;  ///< the spare file, when it was used
     std::thread thread_;

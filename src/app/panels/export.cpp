@@ -109,9 +109,8 @@ void export_dialog(Session& s) {
     if (ui.combo("Preset", c.preset, names)) choose_preset(s);
     ui.note(ui.tr(preset_of(c.preset).note));
     const bool strokes_alone = preset_of(c.preset).extension == std::string(".inkml");
-    if (strokes_alone && std::any_of(s.journal.lines.begin(), s.journal.lines.end(), [](const StrokeLine& l) {
-            return l.action == stroke::EntryKind::layer || l.action == stroke::EntryKind::mask;
-        }))
+    if (strokes_alone && std::any_of(s.journal.lines.begin(), s.journal.lines.end(),
+                                     [](const StrokeLine& l) { return stroke::keeps_texels(l.action); }))
         ui.wrapped(ui.tr("Strokes name their layer and mask; what layers and masks are stays in the project."));
     ImGui::BeginDisabled(strokes_alone);
     map_rows(ui, c, s.paint_thread->model().atlas.size);

@@ -7,7 +7,7 @@
 
 #include "app/panels/panels.h"
 #include "app/widgets/labels.h"
-#include "ink/composite/composite.h"
+#include "ink/composite/match.h"
 #include "ink/composite/recolour.h"
 #include "ink/spectra/kubelka_munk.h"
 
@@ -97,7 +97,7 @@ std::vector<Swatch> list_swatches(const InkParts& s) {
         all.push_back({name, s.ui.tr(name.c_str()), ink_colour(s.colours, name), name == s.brush.ink});
     for (const ink::Ink& own : s.colours.choice.saved)
         if (std::find(names.begin(), names.end(), own.name) == names.end())
-            all.push_back({"own " + own.name, own.name, ink_colour(own), false});
+            all.push_back({"own " + own.name, own.name, ink_colour(s.colours, own), false});
     return all;
 }
 
@@ -216,10 +216,11 @@ void wet_row(const InkParts& s) {
     push_narrow_buttons(ui);
     ImGui::SameLine();
     const float half = part_of_row(ui, 2);
-    if (ui.button("1 min", "Lets wet ink flow and dry for a minute", half))
+    const bool writes = !s.reported.file.viewing;
+    if (ui.button("1 min", "Lets wet ink flow and dry for a minute", half, writes))
         s.work.post(ActOnBrush{.action = stroke::EntryKind::dry, .brush = s.brush.preset, .seconds = 60});
     ImGui::SameLine();
-    if (ui.button("Dry", "Waits until all ink is dry; what is painted then lies over it", part_of_row(ui, 1)))
+    if (ui.button("Dry", "Waits until all ink is dry; what is painted then lies over it", part_of_row(ui, 1), writes))
         s.work.post(ActOnBrush{.action = stroke::EntryKind::dry, .brush = s.brush.preset});
     ImGui::PopStyleVar(2);
 }
@@ -250,22 +251,22 @@ Savings ink_section(const InkParts& s, ToolRoom room) {
     return saves;
 }
 
-unsigned ink_colour(const ink::Ink& ink) {
-    const ink::Rgb linear = ink::colour_of_film(ink, {0.88f, 0.88f, 0.88f});
+unsigned ink_colour(const ColourState& colours, const ink::Ink& ink) {
+    const ink::Rgb linear = ink::colour_on(ink, colours.appearance.document);
     int rgb[3];
     for (std::size_t c = 0; c < 3; ++c) rgb[c] = static_cast<int>(std::lround(255 * ink::srgb_encode(linear[c])));
     return IM_COL32(rgb[0], rgb[1], rgb[2], 255);
 }
 
 unsigned ink_colour(const ColourState& colours, const std::string& name) {
-    static std::map<const ink::Ink*, unsigned> shipped;
+    static std::map<std::pair<const ink::Ink*, std::string>, unsigned> shipped;  // by ink and substrate
     const ink::Ink* ink = find_ink(colours, name);
     if (!ink) return IM_COL32(40, 40, 40, 255);
     if (!colours.own.empty() && ink >= colours.own.data() && ink < colours.own.data() + colours.own.size())
-        return ink_colour(*ink);
-    if (colours.choice.in_hand && ink == &*colours.choice.in_hand) return ink_colour(*ink);
-    const auto [at, is_new] = shipped.try_emplace(ink);
-    if (is_new) at->second = ink_colour(*ink);
+        return ink_colour(colours, *ink);
+    if (colours.choice.in_hand && ink == &*colours.choice.in_hand) return ink_colour(colours, *ink);
+    const auto [at, is_new] = shipped.try_emplace({ink, ink::substrate_toml(colours.appearance.document)});
+    if (is_new) at->second = ink_colour(colours, *ink);
     return at->second;
 }
 
@@ -323,7 +324,7 @@ void colours_panel(Session& s, float top, float bottom, float left) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
         const float size = ImGui::GetFrameHeight();
         swatch(ImGui::GetWindowDrawList(), ImVec2(at.x + 0.5f * size, at.y + 0.5f * size), 0.40f * size,
-               ink_colour(*shown));
+               ink_colour(s.colours, *shown));
         ImGui::Dummy(ImVec2(size, size));
         ImGui::SameLine();
         ImGui::AlignTextToFramePadding();

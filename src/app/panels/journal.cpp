@@ -139,6 +139,7 @@ void edit_chosen(const JournalParts& s) {
     const bool hidden = std::all_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return l->hidden; });
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
     if (lines.size() > 1) ui.note(ui.sentence(Message("{} entries chosen", lines.size())));
+    if (s.viewing) return;
     if (ui.button(hidden ? "Show" : "Hide",
                   hidden ? "Paints it again in its place" : "The other strokes are painted again without it", half))
         post(s, {.hidden = !hidden}, lines);
@@ -167,25 +168,27 @@ void context_menu(const JournalParts& s) {
     const bool hidden = std::all_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return l->hidden; });
     const bool strokes = std::any_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return is_stroke(*l); });
     const bool grouped = std::any_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return l->group.id != 0; });
-    if (ui.menu_item(hidden ? "Show" : "Hide")) post(s, {.hidden = !hidden}, lines);
-    if (ui.menu_item("Move", nullptr, s.journal.move_on_drag, strokes))
+    const bool writes = !s.viewing;
+    if (ui.menu_item(hidden ? "Show" : "Hide", nullptr, false, writes)) post(s, {.hidden = !hidden}, lines);
+    if (ui.menu_item("Move", nullptr, s.journal.move_on_drag, strokes && writes))
         s.journal.move_on_drag = !s.journal.move_on_drag;
-    if (strokes && ui.begin_menu("Brush")) {
+    if (strokes && writes && ui.begin_menu("Brush")) {
         for (const std::string& name : s.brushes)
             if (ui.menu_item(name.c_str())) post(s, {.brush = name}, lines);
         ImGui::EndMenu();
     }
-    if (strokes && ui.begin_menu("Ink")) {
+    if (strokes && writes && ui.begin_menu("Ink")) {
         for (const std::string& name : all_inks(s))
             if (ui.menu_item(name.c_str())) post(s, {.ink = name}, lines);
         ImGui::EndMenu();
     }
     if (ui.menu_item("Zoom to it", nullptr, false, !s.journal.outline.empty())) look_at_outline(s);
     ImGui::Separator();
-    if (ui.menu_item("Make a group", nullptr, false, lines.size() > 1)) post(s, {.group = kGroup}, lines);
-    if (ui.menu_item("Ungroup", nullptr, false, grouped)) post(s, {.group = ""}, lines);
+    if (ui.menu_item("Make a group", nullptr, false, writes && lines.size() > 1)) post(s, {.group = kGroup}, lines);
+    if (ui.menu_item("Ungroup", nullptr, false, writes && grouped)) post(s, {.group = ""}, lines);
     ImGui::Separator();
-    if (ui.menu_item("Delete", name_of(s.keys.chord(Action::delete_stroke)).c_str())) post(s, {.remove = true}, lines);
+    if (ui.menu_item("Delete", name_of(s.keys.chord(Action::delete_stroke)).c_str(), false, writes))
+        post(s, {.remove = true}, lines);
     ui.in_menu = false;
     ImGui::EndPopup();
 }
@@ -237,7 +240,8 @@ const char* layer_change(stroke::LayerChange change) {
 }
 
 RowText text_of(const JournalParts& s, const StrokeLine& line, std::size_t number) {
-    static const char* actions[] = {"", "Dip", "Rinse", "Comb", "Dry", "Layer", "Mask", "Fill", "Wipe", "Wash"};
+    static const char* actions[] = {"",     "Dip",  "Rinse", "Comb", "Dry",  "Layer",
+                                    "Mask", "Fill", "Wipe",  "Wash", "Parts"};
     std::string title = std::to_string(number) + "   ";
     char length[32];
     std::snprintf(length, sizeof length, "%.0f mm", line.length * 1e3);

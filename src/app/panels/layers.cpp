@@ -243,6 +243,7 @@ void layers_section(const LayerParts& s) {
     const auto& all = s.table.layers;
     if (all.empty()) return;
     ui.heading("Layers");
+    ImGui::BeginDisabled(s.viewing);
     for (std::size_t i = all.size(); i-- > 0;) {
         const Layer layer = all[i];
         ImGui::PushID(static_cast<int>(layer.id));
@@ -253,6 +254,7 @@ void layers_section(const LayerParts& s) {
     if (ui.button("Add a layer", "Strokes on it can be shown, faded and moved apart from the others", 0,
                   all.size() < stroke::kMaxLayers))
         add_layer(s.layers, s.work, s.table, fresh_name(s));
+    ImGui::EndDisabled();
 }
 
 }  // namespace tuft::app

@@ -30,15 +30,16 @@ void list(Session& s) {
         ImGui::PopID();
     }
     if (s.masks.active == 0) return;
+    const bool writes = !s.reported.file.viewing;
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
-    if (ui.button("Invert", "A mask of what this one leaves out", half)) {
+    if (ui.button("Invert", "A mask of what this one leaves out", half, writes)) {
         stroke::Mask mask;
         mask.kind = MaskKind::invert;
         mask.of = {s.masks.active};
         make_mask(s, std::move(mask));
     }
     ImGui::SameLine();
-    if (ui.button("Remove mask", "Strokes that keep to it stay as they are", half)) remove(s, s.masks.active);
+    if (ui.button("Remove mask", "Strokes that keep to it stay as they are", half, writes)) remove(s, s.masks.active);
 }
 
 }  // namespace

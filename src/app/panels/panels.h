@@ -40,6 +40,7 @@ struct LayerParts {
     PaintThread& work;
     const stroke::LayerTable& table;
     StatusMessage& status;
+    bool viewing = false;  ///< the project is only looked at
 };
 struct JournalParts {
     Ui& ui;
@@ -49,6 +50,7 @@ struct JournalParts {
     const std::vector<std::string>& brushes;  ///< names of the shipped ones
     const KeyTable& keys;
     Orbit& orbit;
+    bool viewing = false;  ///< the project is only looked at
 };
 struct InkParts {
     Ui& ui;
@@ -71,6 +73,14 @@ struct MarkParts {
     const JournalState& journal;
     const MaskState& masks;
     const stroke::Model& model;
+    const mesh::SurfaceQuery& surface;  ///< of the visible parts
+};
+struct PartParts {
+    Ui& ui;
+    PartState& parts;
+    PaintThread& work;
+    const PaintStatus& reported;
+    const ColourState& colours;
 };
 
 /// What a menu asks for beyond its parts.
@@ -93,6 +103,8 @@ std::string numbered_title(const Ui& ui, const std::string& name, const char* wo
 /// person wrote it. "NAME copy" and "NAME copy N" are the title of NAME and the word of the interface for a copy.
 std::string layer_title(const Ui& ui, const std::string& name);
 void layers_section(const LayerParts& s);
+/// The parts of the model: eye, lock, substrate. Nothing for a model whose file names fewer than two.
+void parts_section(const PartParts& s);
 void journal_section(const JournalParts& s);
 /// Pixels that a section saves in less room.
 struct Savings {
@@ -169,9 +181,10 @@ struct SidePanel {
 void begin_side_panel(Ui& ui, const char* name, const SidePanel& panel);
 /// Handles at the view's edges that hide or show the panels.
 void panel_handles(Session& s);
-/// Returns the sRGB colour (ImU32) of a full film of an ink on porcelain.
+/// Returns the sRGB colour (ImU32) of a dry film of an ink, as thick as a full brush leaves it, on the substrate that
+/// the work is shown on: of an ink that a hex code names, that colour.
 unsigned ink_colour(const ColourState& colours, const std::string& ink);
-unsigned ink_colour(const ink::Ink& ink);
+unsigned ink_colour(const ColourState& colours, const ink::Ink& ink);
 /// Returns the colour of the ink that the next stroke deposits.
 unsigned colour_in_tuft(const BrushSettings& brush, const ColourState& colours, const BrushStatus& painting);
 

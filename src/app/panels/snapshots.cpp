@@ -37,19 +37,21 @@ void snapshot_details(Session& s, const SnapshotLine& line) {
     const std::string title = title_of(ui, line);
     std::snprintf(name, sizeof name, "%s", title.c_str());
     ImGui::SetNextItemWidth(-1);
+    ImGui::BeginDisabled(s.reported.file.viewing);
     if (ImGui::InputText("##name", name, sizeof name, ImGuiInputTextFlags_EnterReturnsTrue) && name[0] && title != name)
         s.paint_thread->post(RenameSnapshot{line.id, name});
     ui.mark("Snapshot name");
+    ImGui::EndDisabled();
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
-    const bool compared = s.journal.snapshots.compared == line.id;
+    const bool compared = s.journal.snapshots.compared == line.id, writes = !s.reported.file.viewing;
     if (ui.choice("Compare", compared, "Shows it beside the work as it is now", half))
         compare_with(s.journal.snapshots, s.view.atlas, s.paint_thread.get(), compared ? "" : line.id);
     ImGui::SameLine();
-    if (ui.button("Restore", "Goes back to it; Undo brings back what is there now", half)) {
+    if (ui.button("Restore", "Goes back to it; Undo brings back what is there now", half, writes)) {
         compare_with(s.journal.snapshots, s.view.atlas, s.paint_thread.get(), "");
         s.paint_thread->post(RestoreSnapshot{line.id});
     }
-    if (ui.button("Delete the snapshot", "The work stays as it is", 2 * half + 8)) {
+    if (ui.button("Delete the snapshot", "The work stays as it is", 2 * half + 8, writes)) {
         if (compared) compare_with(s.journal.snapshots, s.view.atlas, s.paint_thread.get(), "");
         s.paint_thread->post(DetachFromProject{io::kSnapshots, line.id});
     }
@@ -87,7 +89,8 @@ void snapshots_section(Session& s) {
         if (chosen) snapshot_details(s, line);
         ImGui::PopID();
     }
-    if (ui.button("Take a snapshot", "Keeps the work as it is now, to compare with it or to go back to it", 0))
+    if (ui.button("Take a snapshot", "Keeps the work as it is now, to compare with it or to go back to it", 0,
+                  !s.reported.file.viewing))
         s.paint_thread->post(TakeSnapshot{fresh_snapshot_name(s)});
 }
 

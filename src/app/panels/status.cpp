@@ -191,7 +191,7 @@ void draw_side(const Session& s, ImVec2 at, ImVec2 size) {
     v.scale = static_cast<float>(0.72 * size.y / length);
     v.origin = {at.x + 0.40f * size.x, at.y + 0.2f * size.y};
     // The surface below, a point for every few pixels.
-    const mesh::SurfaceQuery& query = *s.paint_thread->model().query;
+    const mesh::SurfaceQuery& query = s.paint_thread->surface();
     std::vector<ImVec2> ground;
     for (float x = at.x; x <= at.x + size.x; x += s.ui.px(4)) {
         const Vec3 from = v.mouth + static_cast<double>((x - v.origin.x) / v.scale) * v.along + 0.3 * length * v.up;

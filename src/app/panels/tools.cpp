@@ -274,6 +274,21 @@ void section_section(Ui& ui, SectionView& section) {
     ui.slider("What stays", section.position, {0.02, 1, "%.2f"});
 }
 
+// The place in millimetres: of the drawing at the cursor, until one is typed.
+void place_fields(Ui& ui, ToolState& tools) {
+    const float gap = ImGui::GetStyle().ItemSpacing.x, width = (ImGui::GetContentRegionAvail().x - 2 * gap) / 3;
+    static constexpr const char* kNames[] = {"Place x", "Place y", "Place z"};
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (k > 0) ImGui::SameLine();
+        ImGui::SetNextItemWidth(width);
+        ImGui::InputDouble((std::string("##") + kNames[k]).c_str(), &tools.place_mm[k], 0, 0, "%.1f");
+        ui.mark(kNames[k]);
+        ui.hint("Place of its middle, millimetres");
+    }
+    if (ui.button("Place it there", "At the place in the fields, with width and turn as they are", 0))
+        tools.place_typed = true;
+}
+
 void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
     if (tools.active != Tool::writing) return;
     Writing& w = tools.writing;
@@ -288,6 +303,8 @@ void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
     if (w.empty()) return;
     for (const Message& note : w.notes) ui.note(ui.sentence(note));
     ui.toggle("Mirrored", w.mirrored);
+    ui.toggle("Snap", tools.snap, "To the plane of symmetry and level with other drawings; Ctrl places it freely");
+    place_fields(ui, tools);
     const bool names =
         std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });
     if (names) ui.toggle("Its brush and ink", w.own_ink, "As the file names them; strokes scale with the drawing");

@@ -20,7 +20,7 @@ ImVec2 on_screen(const MarkParts& s, const render::GlCamera& c, const Vec3& p) {
 
 // Outline of the hair that presses on the surface, laid onto it.
 void contact_outline(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) {
-    const mesh::SurfaceQuery& query = *s.model.query;
+    const mesh::SurfaceQuery& query = s.surface;
     for (const brush::Branch& branch : s.view.tuft.state.branches) {
         std::vector<ImVec2> left, right;
         for (const brush::Section& section : branch.sections) {
@@ -47,7 +47,7 @@ void hover_ring(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw)
     const bool wide = !tuft.mouth.empty();
     const Vec3 from = wide ? tuft.pose.position : root.centre,
                axis = wide ? tuft.pose.axis() : glm::normalize(tip.centre - root.centre);
-    const auto hit = s.model.query->ray(from, axis, 0, 0.2);
+    const auto hit = s.surface.ray(from, axis, 0, 0.2);
     if (!hit) return;
     Frame f = make_frame(hit->position, hit->normal);
     if (wide) {
@@ -76,7 +76,7 @@ void copy_dots(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) 
     if (copies.empty()) return;
     const brush::Section &tip = s.view.tuft.state.branches.front().sections.front(),
                          &root = s.view.tuft.state.branches.front().sections.back();
-    const mesh::SurfaceQuery& query = *s.model.query;
+    const mesh::SurfaceQuery& query = s.surface;
     for (const stroke::PoseMap& map : copies) {
         const Vec3 from = map.point(root.centre), to = map.point(tip.centre), direction = glm::normalize(to - from);
         const auto ahead = query.ray(from, direction, 0, 2 * glm::distance(from, to));
@@ -155,7 +155,7 @@ void scale_bar(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) 
 void curve_marks(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) {
     const auto& points = s.tools.curve.points;
     if (points.empty()) return;
-    const std::vector<CurveSample> places = project_curve(*s.model.query, points, 32);
+    const std::vector<CurveSample> places = project_curve(s.surface, points, 32);
     for (const auto& [colour, width] :
          {std::pair{IM_COL32(20, 20, 24, 170), 4.0f}, std::pair{IM_COL32(255, 196, 64, 255), 1.8f}})
         for (std::size_t i = 1; i < places.size(); ++i)
@@ -174,6 +174,12 @@ void curve_marks(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw
 // Where the writing would lie, as far as it is seen.
 void writing_marks(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) {
     if (s.tools.active != Tool::writing) return;
+    for (const std::vector<Vec3>& guide : s.tools.snap_guides)
+        for (std::size_t i = 1; i < guide.size(); ++i) {
+            const ImVec2 from = on_screen(s, c, guide[i - 1]), to = on_screen(s, c, guide[i]);
+            draw->AddLine(from, to, IM_COL32(30, 30, 34, 160), s.ui.px(3));
+            if (i % 2) draw->AddLine(from, to, IM_COL32(90, 210, 255, 255), s.ui.px(1.6f));
+        }
     for (const auto& line : s.tools.writing_preview)
         for (std::size_t i = 1; i < line.size(); ++i)
             if (line[i - 1].seen && line[i].seen)
@@ -185,7 +191,7 @@ void writing_marks(const MarkParts& s, const render::GlCamera& c, ImDrawList* dr
 void shift_marks(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) {
     const JournalState& j = s.journal;
     if (!j.from || !j.to) return;
-    const mesh::SurfaceQuery& query = *s.model.query;
+    const mesh::SurfaceQuery& query = s.surface;
     const RigidMove m = shift_between(*j.from, *j.to);
     const Vec4f section = section_plane(s.view, s.model.mesh->bounds);
     const double tolerance = 2e-3 * s.model.mesh->bounds.diagonal();

@@ -11,6 +11,7 @@
 #include "app/session/layer_state.h"
 #include "app/session/mask_state.h"
 #include "app/session/panel_layout.h"
+#include "app/session/part_state.h"
 #include "app/session/project_state.h"
 #include "app/session/tool_state.h"
 #include "app/view/view_state.h"
@@ -39,6 +40,7 @@ struct Session {
     BrushSettings brush;
     LayerState layers;
     MaskState masks;
+    PartState parts;
     ColourState colours;
     JournalState journal;
     ArmState arm;

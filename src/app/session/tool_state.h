@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "app/document/curve.h"
@@ -25,6 +26,10 @@ struct ToolState {
     CurveSettings curve_settings;
     Writing writing;
     std::vector<std::vector<PreviewPoint>> writing_preview;  ///< lines of the drawing at the cursor
+    bool snap = true;                            ///< drawings snap to planes of symmetry and to other drawings
+    std::vector<std::vector<Vec3>> snap_guides;  ///< metres, lines along the surface that the drawing snapped to
+    std::array<double, 3> place_mm{};            ///< of the drawing at the cursor, or as typed
+    bool place_typed = false;                    ///< to be placed there
     stroke::Fill fill;
 };
 

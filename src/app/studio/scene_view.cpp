@@ -46,6 +46,7 @@ void SceneView::make_graphics() {
     if (!s.paint_thread || s.view.model_changed) return;
     const stroke::Model& m = s.paint_thread->model();
     scene_->set_mesh(*m.mesh, m.atlas.corner_uvs);
+    parts_ = {};
     s.paint_thread->post(SendTexture{});
     SnapshotState& snapshots = s.journal.snapshots;
     if (comparison_.on()) compare_with(snapshots, s.view.atlas, s.paint_thread.get(), std::string(snapshots.compared));
@@ -55,6 +56,7 @@ void SceneView::take_model() {
     Session& s = session_;
     const stroke::Model& m = s.paint_thread->model();
     scene_->set_mesh(*m.mesh, m.atlas.corner_uvs);
+    parts_ = {};
     const render::MapPixels pixels = s.paint_thread->take_pixels();
     scene_->set_texture(pixels);
     s.view.max_ink_height = highest_of(pixels.levels[0]);
@@ -85,6 +87,23 @@ void SceneView::take_texels() {
         s.view.max_ink_height = std::max(s.view.max_ink_height, highest_of(std::span(tile.rgba).first(256)));
     for (const render::TilePixels& tile : s.view.texels.tiles) view_->texture_changed(tile.boxes);
     s.view.texels.tiles.clear();
+}
+
+void SceneView::take_parts() {
+    const Session& s = session_;
+    const Appearance& shown = s.colours.appearance;
+    PartLook look{.parts = s.reported.document.parts,
+                  .transmission = shown.document.transmission,
+                  .is_preview = shown.is_preview};
+    if (look == parts_) return;
+    stroke::PartTable table = look.parts;
+    if (shown.is_preview)
+        for (stroke::Part& part : table.parts) part.substrate.reset();
+    stroke::PartSet parts(s.paint_thread->model());
+    parts.set_table(std::move(table));
+    scene_->set_parts(parts.hidden_triangles(), parts.transmission(shown.document));
+    view_->scene_changed();
+    parts_ = std::move(look);
 }
 
 void SceneView::show_triangle_colours() {
@@ -133,7 +152,7 @@ void SceneView::update_tuft(const Event* cursor, const std::optional<brush::Pose
         choose_preview();
         Event at = *cursor;
         at.time = now;
-        const PointerInput hand(*s.paint_thread->model().query, preview_->preset, s.tools.pointer);
+        const PointerInput hand(s.paint_thread->surface(), preview_->preset, s.tools.pointer);
         if (const auto pose = hand.hover(aim_of(s, at))) hover(*pose);
     }
     if (s.view.tuft.state.branches.empty() || !s.view.tuft.pressed) return;
@@ -142,7 +161,7 @@ void SceneView::update_tuft(const Event* cursor, const std::optional<brush::Pose
     const auto& sections = s.view.tuft.state.branches.front().sections;
     for (std::size_t i = 1; i < sections.size(); ++i)
         length += glm::distance(sections[i].centre, sections[i - 1].centre);
-    const auto hit = s.paint_thread->model().query->ray(root.centre, root.tangent, 0, length);
+    const auto hit = s.paint_thread->surface().ray(root.centre, root.tangent, 0, length);
     if (hit) s.view.tuft.depth = length - hit->distance;
 }
 
@@ -154,6 +173,7 @@ void SceneView::draw(unsigned framebuffer, int height, bool moving) {
     glClearColor(shade, shade, shade, 1);
     glClear(GL_COLOR_BUFFER_BIT);
     if (!s.paint_thread || s.view.model_changed) return;
+    take_parts();
     show_triangle_colours();
     static constexpr render::Shading shadings[] = {
         render::Shading::glaze,  render::Shading::clay,   render::Shading::flat,      render::Shading::height,

@@ -36,13 +36,24 @@ class SceneView {
   private:
     void choose_preview();
     void hover(const brush::Pose& pose);
+    void take_parts();
     void show_triangle_colours();
     void draw_atlas(const render::DrawOptions& options, unsigned framebuffer, int height);
+
+    /// Parts as the scene shows them.
+    struct PartLook {
+        stroke::PartTable parts;
+        float transmission = 0;   ///< of the document's substrate
+        bool is_preview = false;  ///< which is seen everywhere
+
+        bool operator==(const PartLook&) const = default;
+    };
 
     Session& session_;
     Comparison comparison_;
     std::unique_ptr<render::GlScene> scene_;
     std::unique_ptr<render::GlView> view_;
+    PartLook parts_;
     ModelView shading_ = ModelView::glaze;  ///< of the scene's present colours
     std::optional<brush::Tuft> preview_;    ///< hovering tuft
     std::string preview_brush_;             ///< its name; empty: to be read again

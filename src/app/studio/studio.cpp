@@ -174,10 +174,12 @@ void Studio::draw_journal(float top, float bottom, float left) {
         ui.primary_button("Back to the tools", ImGui::GetContentRegionAvail().x / ui.settings().scale))
         s.panels.journal_over_tools = false;
     history_buttons({ui, work, s.reported, s.preferences.keys});
-    layers_section({ui, s.layers, work, s.reported.document.layers, s.status});
+    layers_section({ui, s.layers, work, s.reported.document.layers, s.status, s.reported.file.viewing});
+    parts_section({ui, s.parts, work, s.reported, s.colours});
     references_section(s);
     snapshots_section(s);
-    journal_section({ui, s.journal, work, s.colours, s.brush.presets, s.preferences.keys, s.view.orbit});
+    journal_section(
+        {ui, s.journal, work, s.colours, s.brush.presets, s.preferences.keys, s.view.orbit, s.reported.file.viewing});
     ImGui::End();
 }
 
@@ -215,7 +217,8 @@ void Studio::draw_side_panels() {
     swipe_line(s);
     comparison_bar(s);
     guide(s);
-    view_marks({s.ui, s.view, s.tools, s.journal, s.masks, s.paint_thread->model()}, camera_of(s));
+    view_marks({s.ui, s.view, s.tools, s.journal, s.masks, s.paint_thread->model(), s.paint_thread->surface()},
+               camera_of(s));
     arm_marks(s, camera_of(s));
     atlas_marks(s.ui, s.view.atlas, *s.paint_thread, atlas_cursor(s, input_.cursor()));
 }

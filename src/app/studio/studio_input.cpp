@@ -113,7 +113,7 @@ void StudioInput::scroll(const Event& e) {
         orbit.roll += 0.06 * e.steps;
         return;
     }
-    const auto hit = aim_at(*s.paint_thread->model().query, aim_of(s, e));
+    const auto hit = aim_at(s.paint_thread->surface(), aim_of(s, e));
     orbit.zoom(e.steps, hit ? hit->position : orbit.target);
 }
 
@@ -301,8 +301,7 @@ bool StudioInput::perform_view(Action action) {
     if (action == Action::frame_all)
         view.orbit.frame(s.paint_thread->model().mesh->bounds);
     else if (action == Action::frame_cursor) {
-        if (const auto hit = aim_at(*s.paint_thread->model().query, aim_of(s, cursor_)))
-            view.orbit.target = hit->position;
+        if (const auto hit = aim_at(s.paint_thread->surface(), aim_of(s, cursor_))) view.orbit.target = hit->position;
     } else if (action == Action::parallel)
         view.orbit.set_parallel(!view.orbit.parallel);
     else if (action == Action::atlas)

@@ -36,7 +36,7 @@ std::optional<Frame> ArmInput::start_frame() const {
     for (double reach = 0; reach < 0.5 * area.height; reach += kBetweenStarts)
         for (const Vec2& side : {Vec2{0, 1}, Vec2{0, -1}, Vec2{1, 0}, Vec2{-1, 0}}) {
             const Aim aim = aim_of(s, {.x = x + reach * side.x, .y = y + reach * side.y});
-            if (const auto hit = aim_at(*s.paint_thread->model().query, aim))
+            if (const auto hit = aim_at(s.paint_thread->surface(), aim))
                 return make_frame(hit->position,
                                   glm::dot(hit->normal, aim.ray.direction) > 0 ? -hit->normal : hit->normal,
                                   Vec3{1, 0, 0});
@@ -49,18 +49,21 @@ void ArmInput::follow_scene() {
     Session& s = session_;
     ArmState& a = s.arm;
     a.on_palette = a.on_palette && s.colours.palette.shown;
-    const bool same =
-        a.arm->feels() && work_ == s.paint_thread.get() && brush_ == s.brush.preset && on_palette_ == a.on_palette;
+    const bool same = a.arm->feels() && work_ == s.paint_thread.get() && surface_ == s.paint_thread->shared_surface() &&
+                      brush_ == s.brush.preset && on_palette_ == a.on_palette;
     if (same || a.in_stroke() || !a.arm->ready()) return;
     const std::optional<Frame> start = start_frame();
     if (!start) return;
     if (a.on_palette && !plate_) plate_ = stroke::make_palette();
     try {
         preset_ = brush::load_preset(s.brush.preset);
-        a.arm->feel({.surface = a.on_palette ? plate_->query.get() : s.paint_thread->model().query.get(),
+        // The loop stops with the former surface before that goes.
+        std::shared_ptr<const mesh::SurfaceQuery> surface = s.paint_thread->shared_surface();
+        a.arm->feel({.surface = a.on_palette ? plate_->query.get() : surface.get(),
                      .brush = preset_,
                      .start = *start,
                      .axes = axes()});
+        surface_ = std::move(surface);
     } catch (const Error& error) {
         show_message(s.status, error.message());
         return a.arm.reset();
@@ -151,7 +154,7 @@ void ArmInput::move(const Event& e) {
     ArmState& a = s.arm;
     if (!a.arm || !a.arm->follows_pointer() || !a.arm->feels() || a.clutched || on_palette_) return;
     const Aim aim = aim_of(s, e);
-    const PointerInput hand(*s.paint_thread->model().query, preset_, s.tools.pointer);
+    const PointerInput hand(s.paint_thread->surface(), preset_, s.tools.pointer);
     const auto pose = hand.hover(aim);
     const auto surface = hand.find_surface(aim);
     if (!pose || !surface || surface->inside) return;

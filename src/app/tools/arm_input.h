@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "app/input/events.h"
@@ -35,10 +36,11 @@ class ArmInput {
     Quat axes() const;
 
     Session& session_;
-    std::optional<stroke::Model> plate_;  ///< of the palette, created when the arm first works on it
-    std::string brush_;                   ///< felt at present
-    brush::Preset preset_;                ///< of it
-    const PaintThread* work_ = nullptr;   ///< whose model is felt
+    std::optional<stroke::Model> plate_;                 ///< of the palette, created when the arm first works on it
+    std::string brush_;                                  ///< felt at present
+    brush::Preset preset_;                               ///< of it
+    const PaintThread* work_ = nullptr;                  ///< whose model is felt
+    std::shared_ptr<const mesh::SurfaceQuery> surface_;  ///< of its visible parts
     bool on_palette_ = false, with_view_ = true, pressed_ = false;
     double scale_ = 1, counted_at_ = 0;
     std::uint64_t counted_periods_ = 0;

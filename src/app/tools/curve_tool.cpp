@@ -36,7 +36,7 @@ int CurveTool::point_at(const Event& e) const {
 
 std::optional<CurvePoint> CurveTool::point_of(const Event& e) const {
     const Aim aim = aim_of(session_, e);
-    const mesh::SurfaceQuery& query = *session_.paint_thread->model().query;
+    const mesh::SurfaceQuery& query = session_.paint_thread->surface();
     const auto hit = aim_at(query, aim);
     if (!hit || is_through_a_hole(query, *hit, aim)) return std::nullopt;
     return CurvePoint{.position = hit->position, .outward = -aim.ray.direction};
@@ -138,7 +138,7 @@ void CurveTool::paint(double now) {
     const brush::Preset preset = brush::load_preset(s.brush.preset);
     const TipLag lag = tip_lag_.find(preset);
     const render::GlCamera c = camera_of(session_);
-    CurveHand hand{.holder = stroke::holder_options(preset, s.paint_thread->model().query->mesh()),
+    CurveHand hand{.holder = stroke::holder_options(preset, s.paint_thread->surface().mesh()),
                    .settings = s.tools.curve_settings,
                    .pressure = s.tools.pointer.pressure,
                    .tilt = {s.tools.pointer.tilt.x, -s.tools.pointer.tilt.y},
@@ -148,7 +148,7 @@ void CurveTool::paint(double now) {
                    .down = -c.up};
     hand.holder.tip_lag = lag.upright;
     hand.holder.tip_lag_change = lag.tilted;
-    const auto strokes = curve_poses(*s.paint_thread->model().query, curve.points, hand);
+    const auto strokes = curve_poses(s.paint_thread->surface(), curve.points, hand);
     if (strokes.empty()) return show_message(s.status, "The line does not lie on the model.");
     if (editable()) s.paint_thread->post(UndoStroke{});
     for (std::size_t i = 0; i < strokes.size(); ++i) {

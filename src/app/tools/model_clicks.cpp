@@ -14,14 +14,14 @@ constexpr double kLassoStep = 3;  // pixels between two of its corners
 }  // namespace
 
 void press_fill(Session& s, const Event& e) {
-    const auto hit = aim_at(*s.paint_thread->model().query, aim_of(s, e));
+    const auto hit = aim_at(s.paint_thread->surface(), aim_of(s, e));
     if (!hit) return;
     s.tools.fill.at = hit->position;
     s.paint_thread->post(FillModel{s.brush.ink, s.tools.fill, s.layers.active, s.masks.active});
 }
 
 void press_pick(Session& s, const Event& e) {
-    const auto hit = aim_at(*s.paint_thread->model().query, aim_of(s, e));
+    const auto hit = aim_at(s.paint_thread->surface(), aim_of(s, e));
     if (hit)
         s.paint_thread->post(PickInk{hit->position});
     else
@@ -36,7 +36,7 @@ void press_mask(Session& s, const Event& e) {
         return;
     }
     const stroke::Model& model = s.paint_thread->model();
-    const auto hit = aim_at(*model.query, aim_of(s, e));
+    const auto hit = aim_at(s.paint_thread->surface(), aim_of(s, e));
     if (!hit) return;
     if (mask.kind == stroke::MaskKind::angle) {
         mask.direction = hit->normal;
@@ -78,17 +78,17 @@ void release_lasso(Session& s) {
 
 bool press_move(Session& s, const Event& e) {
     if (!s.journal.move_on_drag) return false;
-    s.journal.from = s.journal.to = aim_at(*s.paint_thread->model().query, aim_of(s, e));
+    s.journal.from = s.journal.to = aim_at(s.paint_thread->surface(), aim_of(s, e));
     return true;
 }
 
 void drag_move(Session& s, const Event& e) {
-    if (const auto to = aim_at(*s.paint_thread->model().query, aim_of(s, e))) s.journal.to = to;
+    if (const auto to = aim_at(s.paint_thread->surface(), aim_of(s, e))) s.journal.to = to;
 }
 
 void release_move(Session& s, const Event& e) {
     JournalState& j = s.journal;
-    if (const auto to = aim_at(*s.paint_thread->model().query, aim_of(s, e))) j.to = to;
+    if (const auto to = aim_at(s.paint_thread->surface(), aim_of(s, e))) j.to = to;
     if (glm::distance(j.from->position, j.to->position) > 1e-5)
         s.paint_thread->post(
             EditStrokes{.ids = {j.selected.begin(), j.selected.end()}, .move = shift_between(*j.from, *j.to)});

@@ -37,7 +37,8 @@ BeginStroke stroke_to_stir(const Session& s) {
 void StrokeInput::press(const Event& e) {
     Session& s = session_;
     try {
-        start(*s.paint_thread->model().query, brush::load_preset(s.brush.preset), false);
+        surface_ = s.paint_thread->shared_surface();
+        start(*surface_, brush::load_preset(s.brush.preset), false);
     } catch (const Error& error) {
         show_message(s.status, error.message());
         return;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -54,6 +55,7 @@ class StrokeInput {
 
     Session& session_;
     TipLagCache& tip_lag_;
+    std::shared_ptr<const mesh::SurfaceQuery> surface_;  ///< of the stroke: parts may be hidden meanwhile
     std::optional<PointerInput> hand_;
     std::optional<stroke::Model> plate_;  ///< of the palette, created with its first stroke
     bool on_plate_ = false;               ///< the stroke is on the palette

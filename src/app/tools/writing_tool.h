@@ -14,7 +14,7 @@ class WritingTool {
   public:
     explicit WritingTool(Session& session) : session_(session) {}
 
-    /// Updates the preview of the drawing at the cursor.
+    /// Updates the preview of the drawing at the cursor, and places it where a place was typed.
     void watch(const Event* cursor);
     /// Scales the drawing; with Shift, turns it.
     void wheel(const Event& e);
@@ -22,7 +22,15 @@ class WritingTool {
     void place(const Event* cursor);
 
   private:
-    std::optional<stroke::Placement> placement(const Event* cursor) const;
+    /// A point of the surface for the middle of the drawing, its normal towards the eye, and where that is.
+    struct Spot {
+        Vec3 at, normal, eye;
+        std::vector<std::vector<Vec3>> guides = {};  ///< of what it snapped to
+    };
+    std::optional<Spot> spot(const Event* cursor) const;
+    std::optional<Spot> typed_spot() const;
+    stroke::Placement placement_at(const Spot& spot) const;
+    void place(const Spot& spot);
 
     Session& session_;
     // Arguments of the last preview.

@@ -96,6 +96,23 @@ void draw_references(const IconPen& p) {
     p.dot(12, 4.5f, 2.2f);
 }
 
+void draw_eye(const IconPen& p, bool open) {
+    p.bezier({2, 12}, {7, 19}, {17, 19}, {22, 12});
+    if (open) {
+        p.bezier({2, 12}, {7, 5}, {17, 5}, {22, 12});
+        p.dot(12, 12, 3.2f);
+        return;
+    }
+    for (const ImVec2& lash : {ImVec2(6, 20), ImVec2(12, 21.5f), ImVec2(18, 20)})
+        p.line({{12 + 0.7f * (lash.x - 12), 16.5f}, lash});
+}
+
+void draw_lock(const IconPen& p, bool closed) {
+    p.area({{5, 11}, {19, 11}, {19, 21}, {5, 21}});
+    const float x = closed ? 0.0f : 7.0f;
+    p.bezier({8 + x, 11}, {8 + x, 1}, {16 + x, 1}, {16 + x, closed ? 11.0f : 8.0f});
+}
+
 }  // namespace
 
 void draw_icon(ImDrawList* draw, Icon icon, const ImVec2& at, float size, unsigned colour) {
@@ -123,6 +140,12 @@ void draw_icon(ImDrawList* draw, Icon icon, const ImVec2& at, float size, unsign
             return draw_palette(p);
         case Icon::references:
             return draw_references(p);
+        case Icon::eye:
+        case Icon::closed_eye:
+            return draw_eye(p, icon == Icon::eye);
+        case Icon::lock:
+        case Icon::open_lock:
+            return draw_lock(p, icon == Icon::lock);
     }
 }
 

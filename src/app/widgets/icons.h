@@ -7,7 +7,22 @@ struct ImVec2;
 /// Icons of tools, drawn as lines so that they are sharp at every scale. Window thread.
 namespace tuft::app {
 
-enum class Icon { brush, line, curve, place, eraser, fill, pick, mask, palette, references };
+enum class Icon {
+    brush,
+    line,
+    curve,
+    place,
+    eraser,
+    fill,
+    pick,
+    mask,
+    palette,
+    references,
+    eye,
+    closed_eye,
+    lock,
+    open_lock
+};
 
 /// Draws an icon into a square of `size` pixels with its upper left corner at `at`.
 void draw_icon(ImDrawList* draw, Icon icon, const ImVec2& at, float size, unsigned colour);

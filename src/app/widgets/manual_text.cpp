@@ -55,13 +55,17 @@ constexpr ManualPage kPages[] = {
      "them, a click places them.\n"
      "\"Drape\" bridges small grooves, panel gaps and scan noise; \"Wrap\" goes into each groove; \"Project\" goes "
      "straight, as seen from before the place. Strokes scale with the drawing.\n"
-     "A placed drawing is one group in the journal: hidden, moved, inked and deleted as one.\n"},
+     "A placed drawing is one group in the journal: hidden, moved, inked and deleted as one.\n"
+     "It snaps to the plane of symmetry and level with other drawings, along the blue line; Ctrl places it freely. Its "
+     "place can be typed.\n"},
     {"Layers, masks and filling",
      "* Strokes go onto the chosen layer. Layers are shown, faded, ordered and locked apart from each other.\n"
      "* {eraser} takes ink off the chosen layer, as deep as it is pressed.\n"
      "* {fill} covers the model, a part or a chart with ink.\n"
      "* {mask}: what faces one way, a chart, a group of the file or a lasso. The rest is veiled and takes no ink. "
-     "\"Mask off\" paints everywhere again.\n"},
+     "\"Mask off\" paints everywhere again.\n"
+     "* Parts are the groups of the model's file. The eye hides a part: the brush paints what lies behind it. The lock "
+     "keeps its ink as it is. Chosen parts can be isolated and made of another material, such as glass.\n"},
     {"Journal and snapshots",
      "The journal lists all that was done, the newest on top.\n"
      "* A click chooses an entry, and its ink is highlighted on the model. Ctrl adds more, Shift takes a range, Esc "

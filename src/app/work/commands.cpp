@@ -13,7 +13,7 @@ bool changes_work(const Command& command) {
                    [](const TakeSnapshot&) { return true; }, [](const RenameSnapshot&) { return true; },
                    [](const RestoreSnapshot&) { return true; }, [](const FillModel&) { return true; },
                    [](const ChangeLayers&) { return true; }, [](const ChangeMasks&) { return true; },
-                   [](const auto&) { return false; }},
+                   [](const ChangeParts&) { return true; }, [](const auto&) { return false; }},
         command);
 }
 

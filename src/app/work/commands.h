@@ -99,6 +99,10 @@ struct ShowMask {
 struct ChangeLayers {
     stroke::LayerEdit edit;
 };
+/// Shows, hides, locks parts of the model or gives them a substrate.
+struct ChangeParts {
+    stroke::PartEdit edit;
+};
 /// Sets view and size of the layers' thumbnails.
 struct LookFrom {
     render::GlCamera camera;
@@ -177,7 +181,7 @@ using Command = std::variant<AttachToProject, DetachFromProject, TakeSnapshot, R
                              RestoreSnapshot, BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing,
                              ActOnBrush, UndoStroke, RedoStroke, SaveProject, RetrySaving, ExportModel, ExportSheets,
                              ExportFilm, EditStrokes, HighlightStrokes, FillModel, ChangeLayers, SendTexture, PickInk,
-                             TakeInk, RecolourInk, PreviewSubstrate, ChangeMasks, ShowMask, LookFrom>;
+                             TakeInk, RecolourInk, PreviewSubstrate, ChangeMasks, ChangeParts, ShowMask, LookFrom>;
 
 /// Returns true when the command changes the work. It is refused while a project is only viewed.
 bool changes_work(const Command& command);

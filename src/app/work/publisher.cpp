@@ -6,7 +6,7 @@
 #include <iterator>
 #include <set>
 
-#include "ink/composite/composite.h"
+#include "ink/composite/match.h"
 #include "ink/spectra/kubelka_munk.h"
 #include "io/project/attachments.h"
 #include "stroke/session/session.h"
@@ -42,12 +42,15 @@ void Publisher::publish(bool journal_changed) {
     const brush::TuftState* tuft = document.session() ? &document.session()->tuft() : nullptr;
     const stroke::BrushInHand* held = document.brushes().find(brush_);
     const Autosave& file = work_.autosave;
+    const std::shared_ptr<const mesh::SurfaceQuery> surface = document.parts().surface();
     outbox_.change([&](Update& update) {
         if (journal_changed) update.events.strokes = lines_;
         if (!wells.empty()) update.events.palette = palette_;
         PaintStatus& status = update.status;
+        status.surface = surface;
         status.document = {.layers = document.layers().table(),
                            .masks = document.masks().table(),
+                           .parts = document.parts().table(),
                            .can_undo = !history_.done.empty() && !file.viewing(),
                            .can_redo = !history_.undone.empty(),
                            .wet = std::ranges::any_of(document.layers().canvases(),
@@ -95,7 +98,9 @@ void Publisher::update_brush_colour() {
     for (std::size_t p = 0; p < pigments.size(); ++p)
         if (mix[p] > 0) ink.parts.push_back({pigments[p], static_cast<double>(mix[p])});
     if (ink.parts.empty()) return;
-    const ink::Rgb linear = ink::colour_of_film(ink, {0.88f, 0.88f, 0.88f});
+    const stroke::Document& document = *work_.document;
+    if (!held->dipped.empty()) ink.film = document.materials().ink(held->dipped).film;
+    const ink::Rgb linear = ink::colour_on(ink, document.appearance().substrate());
     brush_colour_.emplace();
     for (std::size_t c = 0; c < 3; ++c)
         (*brush_colour_)[c] = static_cast<std::uint8_t>(std::lround(255 * ink::srgb_encode(linear[c])));
@@ -124,7 +129,9 @@ void Publisher::publish_appearance() {
     Appearance appearance{.recolours = shown.recolours(),
                           .substrate = shown.substrate().name,
                           .painted_on = work_.document->materials().substrate().name,
-                          .roughness = shown.substrate().roughness};
+                          .roughness = shown.substrate().roughness,
+                          .document = shown.substrate(),
+                          .is_preview = shown.has_preview_substrate()};
     outbox_.change([&](Update& update) { update.events.appearance = std::move(appearance); });
 }
 

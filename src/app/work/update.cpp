@@ -18,6 +18,8 @@ StrokeLine stroke_line(const stroke::JournalEntry& entry) {
     if (const auto* edit = entry.as<stroke::LayerEdit>()) line.change = edit->what;
     const bool flat = stroke::samples_of(entry).flat;
     const std::vector<stroke::StrokeSample>& samples = stroke::samples_of(entry).samples;
+    if (stroke && flat && !line.on_palette) line.placement = stroke->trace.placement;
+    if (const auto* fill = entry.as<stroke::Fill>(); fill && fill->area) line.placement = fill->area->placement;
     if (samples.empty()) return line;
     Vec3 normal(0);
     Vec3 mean(0);

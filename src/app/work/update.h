@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -27,11 +28,12 @@ struct StrokeLine {
     std::string brush, ink, label;
     stroke::EntryGroup group;
     bool hidden = false, erases = false, on_palette = false;
-    double length = 0;        ///< metres, of the path
-    std::vector<Vec3f> path;  ///< x, y in [0, 1], y down; z: pressure in [0, 1]
-    bool flat = false;        ///< `path` is in the frame of a drawing
-    Vec2 path_centre{0};      ///< metres, point of the drawing at (0.5, 0.5)
-    double path_span = 0;     ///< metres, length of [0, 1]
+    double length = 0;                           ///< metres, of the path
+    std::vector<Vec3f> path;                     ///< x, y in [0, 1], y down; z: pressure in [0, 1]
+    bool flat = false;                           ///< `path` is in the frame of a drawing
+    Vec2 path_centre{0};                         ///< metres, point of the drawing at (0.5, 0.5)
+    double path_span = 0;                        ///< metres, length of [0, 1]
+    std::optional<stroke::Placement> placement;  ///< of a drawing that lies on the model
 };
 
 /// A point on the outline of highlighted ink.
@@ -44,12 +46,15 @@ struct Appearance {
     std::map<std::string, ink::Ink> recolours;  ///< by name of the ink in the journal
     std::string substrate, painted_on;          ///< shown; of the journal
     float roughness = 0.1f;                     ///< of the bare surface, as shown
+    ink::Substrate document;                    ///< the shown one
+    bool is_preview = false;                    ///< it is seen in place of those of the parts
 };
 
 /// State of the document.
 struct DocumentStatus {
     stroke::LayerTable layers;
     stroke::MaskTable masks;
+    stroke::PartTable parts;
     bool can_undo = false, can_redo = false;
     bool wet = false;         ///< some ink is wet
     double undo_seconds = 0;  ///< duration of the last undo
@@ -82,6 +87,7 @@ struct FileStatus {
 };
 
 struct PaintStatus {
+    std::shared_ptr<const mesh::SurfaceQuery> surface;  ///< of the visible parts; null before the first update
     DocumentStatus document;
     BrushStatus brush;
     ProgressStatus progress;

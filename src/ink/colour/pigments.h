@@ -88,6 +88,9 @@ struct Substrate {
     Rgb reflectance{0.8f, 0.8f, 0.8f};  ///< linear, diffuse, of the bare surface as it is seen
     float roughness = 0.5f;             ///< glTF perceptual roughness
     float metallic = 0;
+    /// Part of the light that passes the bare substrate (KHR_materials_transmission); 0: it is opaque. Ink hides what
+    /// is behind it: w film units leave exp(−4 w) of it.
+    float transmission = 0;
     float capacity = 8;  ///< film units that stay on it, all inks together
 
     /// Part of the light that meets an air boundary above the ink: 1 under a glaze or

@@ -11,9 +11,9 @@ using preset::shortest_in;
 Substrate parse_substrate(std::string_view text, const std::string& source) {
     const toml::table table = preset::parse_table(text, source);
     const preset::Reader in(table, source);
-    in.only({"name", "title", "reflectance", "roughness", "metallic", "capacity", "interface", "relief_um",
-             "relief_length_um", "absorbency", "pores", "pore_radius_nm", "contact_angle_deg", "retention", "diffusion",
-             "threshold", "edge", "evaporation", "source"});
+    in.only({"name", "title", "reflectance", "roughness", "metallic", "transmission", "capacity", "interface",
+             "relief_um", "relief_length_um", "absorbency", "pores", "pore_radius_nm", "contact_angle_deg", "retention",
+             "diffusion", "threshold", "edge", "evaporation", "source"});
     Substrate s;
     const auto read = [&](float& field, std::string_view key, double lo, double hi, double unit = 1) {
         const double value = in.number(key, lo, hi, static_cast<double>(field) / unit);
@@ -24,6 +24,7 @@ Substrate parse_substrate(std::string_view text, const std::string& source) {
     s.reflectance = in.rgb("reflectance", 0, 1);
     s.roughness = static_cast<float>(in.number("roughness", 0, 1, 0.5));
     s.metallic = static_cast<float>(in.number("metallic", 0, 1, 0.0));
+    s.transmission = static_cast<float>(in.number("transmission", 0, 1, 0.0));
     s.capacity = static_cast<float>(in.number("capacity", 0.1, 1000, 8.0));
     read(s.interface, "interface", 0, 1);
     read(s.relief, "relief_um", 0, 1000, 1e-6);
@@ -43,6 +44,7 @@ Substrate parse_substrate(std::string_view text, const std::string& source) {
 std::string substrate_toml(const Substrate& s) {
     return "name = " + quoted(s.name) + "\ntitle = " + quoted(s.title) + "\nreflectance = " + list_text(s.reflectance) +
            "\nroughness = " + shortest_float(s.roughness) + "\nmetallic = " + shortest_float(s.metallic) +
+           (s.transmission > 0 ? "\ntransmission = " + shortest_float(s.transmission) : std::string()) +
            "\ncapacity = " + shortest_float(s.capacity) + "\ninterface = " + shortest_float(s.interface) +
            "\nrelief_um = " + shortest_in(s.relief, 1e-6) +
            "\nrelief_length_um = " + shortest_in(s.relief_length, 1e-6) +

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <numeric>
 
 #include "core/system/parallel.h"
@@ -184,9 +185,20 @@ AtlasMap<T> compose(std::span<const std::uint32_t> slots, const atlas::TexelMap&
     return image;
 }
 
-/// Slots whose colour is not the substrate's.
+/// Slots with ink, or with a substrate of a part.
+std::vector<std::uint32_t> own_slots(const Stack& stack) {
+    std::vector<std::uint32_t> slots = stack.touched_slots();
+    if (!stack.substrates) return slots;
+    std::vector<std::uint32_t> differing, all;
+    for (std::uint32_t slot = 0; slot < stack.substrates->of_slot.size(); ++slot)
+        if (stack.differs(slot)) differing.push_back(slot);
+    std::set_union(slots.begin(), slots.end(), differing.begin(), differing.end(), std::back_inserter(all));
+    return all;
+}
+
+/// Slots whose colour is not that of the substrate that a call states.
 std::vector<std::uint32_t> coloured_slots(const Stack& stack) {
-    if (!stack.has_base_colour()) return stack.touched_slots();
+    if (!stack.has_base_colour()) return own_slots(stack);
     std::vector<std::uint32_t> all(stack.base_colour->tiles.size());
     std::iota(all.begin(), all.end(), 0u);
     return all;
@@ -200,6 +212,18 @@ float film_on(const Stack& stack, std::uint32_t slot, int texel) {
             for (int p = 0; p < static_cast<int>(layer.canvas->pigments().size()); ++p)
                 if (const Plane* w = layer.canvas->film_plane(slot, film, p)) sum += layer.opacity * (*w)[texel];
     return sum;
+}
+
+const Substrate& substrate_at(const Stack& stack, std::uint32_t slot, int texel, const Substrate& document) {
+    if (!stack.substrates) return document;
+    const auto mixed = stack.substrates->of_texel.find(slot);
+    if (mixed == stack.substrates->of_texel.end()) return stack.substrates->of(slot, document);
+    return stack.substrates->at(mixed->second[static_cast<std::size_t>(texel)], document);
+}
+
+/// What ink leaves of a property of the substrate: it hides metal and glass as it hides the microfacets.
+float uncovered(const Stack& stack, std::uint32_t slot, int texel, float property) {
+    return property > 0 ? property * std::exp(-4 * film_on(stack, slot, texel)) : property;
 }
 
 TileOut<std::uint8_t, 3> srgb8_of(const TileAppearance& appearance) {
@@ -292,7 +316,7 @@ AtlasMap<float> compose_height(const Stack& stack, const atlas::TexelMap& map, c
 AtlasMap<float> compose_roughness(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
                                   const ComposeOptions& options) {
     return compose<float, 1>(
-        stack.touched_slots(), map, {substrate.roughness}, options,
+        own_slots(stack), map, {substrate.roughness}, options,
         [&](std::uint32_t slot) {
             const TileAppearance appearance = shade_tile(stack, slot, substrate, false);
             TileOut<float, 1> out;
@@ -328,15 +352,33 @@ AtlasMap<std::uint8_t> compose_orm8(const Stack& stack, const atlas::TexelMap& m
                                     const ComposeOptions& options) {
     const std::array<std::uint8_t, 3> background{255, unit8(substrate.roughness), unit8(substrate.metallic)};
     return compose<std::uint8_t, 3>(
-        stack.touched_slots(), map, background, options,
+        own_slots(stack), map, background, options,
         [&](std::uint32_t slot) {
             const TileAppearance appearance = shade_tile(stack, slot, substrate, false);
             TileOut<std::uint8_t, 3> out;
             for (int t = 0; t < kN; ++t) {
-                // Ink hides the substrate's metal as it hides its microfacets.
-                const float film = substrate.metallic > 0 ? film_on(stack, slot, t) : 0;
-                out[t] = {255, unit8(appearance.roughness[t]), unit8(substrate.metallic * std::exp(-4 * film))};
+                const float metallic = substrate_at(stack, slot, t, substrate).metallic;
+                out[t] = {255, unit8(appearance.roughness[t]), unit8(uncovered(stack, slot, t, metallic))};
             }
+            return out;
+        },
+        UnitCode{});
+}
+
+bool has_transmission(const Stack& stack, const Substrate& substrate) {
+    const auto passes = [](const Substrate& s) { return s.transmission > 0; };
+    return passes(substrate) || (stack.substrates && std::ranges::any_of(stack.substrates->others, passes));
+}
+
+AtlasMap<std::uint8_t> compose_transmission8(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
+                                             const ComposeOptions& options) {
+    if (!has_transmission(stack, substrate)) return {.size = map.size, .channels = 1, .texels = {}};
+    return compose<std::uint8_t, 1>(
+        own_slots(stack), map, {unit8(substrate.transmission)}, options,
+        [&](std::uint32_t slot) {
+            TileOut<std::uint8_t, 1> out;
+            for (int t = 0; t < kN; ++t)
+                out[t] = {unit8(uncovered(stack, slot, t, substrate_at(stack, slot, t, substrate).transmission))};
             return out;
         },
         UnitCode{});

@@ -331,10 +331,21 @@ TileAppearance shade_tile(const Canvas& canvas, std::uint32_t slot, const Substr
                        with_colour);
 }
 
-TileAppearance shade_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate, bool with_colour,
-                          ColourSpace space) {
+namespace {
+
+/// How a tile is shaded.
+struct Shade {
+    bool with_colour = true;
+    ColourSpace space = ColourSpace::srgb;
+    bool base_colour = true;  ///< that of the stack, where it has one
+};
+
+/// The whole tile on one substrate.
+TileAppearance shade_on(const Stack& stack, std::uint32_t slot, const Substrate& substrate, const Shade& how) {
+    const auto [with_colour, space, over_base] = how;
     TileAppearance appearance;
-    const BaseColour::Tile* tile = with_colour && stack.has_base_colour() ? &stack.base_colour->tiles[slot] : nullptr;
+    const BaseColour::Tile* tile =
+        with_colour && over_base && stack.has_base_colour() ? &stack.base_colour->tiles[slot] : nullptr;
     Reflectances r(with_colour && (!tile || stack.touched(slot)));
     begin_appearance(r, appearance, substrate);
     TileBaseColour base_colour;
@@ -360,6 +371,40 @@ TileAppearance shade_tile(const Stack& stack, std::uint32_t slot, const Substrat
     if (tile) add_lost_colour(appearance, base_colour);
     if (with_colour && space != ColourSpace::srgb) convert(appearance, space);
     return appearance;
+}
+
+void copy_texel(TileAppearance& to, const TileAppearance& from, std::size_t t) {
+    for (std::size_t c = 0; c < 3; ++c) to.colour[c][t] = from.colour[c][t];
+    to.height[t] = from.height[t];
+    to.roughness[t] = from.roughness[t];
+}
+
+/// A tile whose texels have several substrates.
+TileAppearance shade_mixed(const Stack& stack, std::uint32_t slot, const Substrate& document,
+                           const SubstrateMap::Indices& indices, Shade how) {
+    TileAppearance mixed;
+    std::array<bool, 256> done{};
+    for (const std::uint8_t index : indices) {
+        if (done[index]) continue;
+        done[index] = true;
+        how.base_colour = index == 0;
+        const TileAppearance one = shade_on(stack, slot, stack.substrates->at(index, document), how);
+        for (std::size_t t = 0; t < indices.size(); ++t)
+            if (indices[t] == index) copy_texel(mixed, one, t);
+    }
+    return mixed;
+}
+
+}  // namespace
+
+TileAppearance shade_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate, bool with_colour,
+                          ColourSpace space) {
+    const Shade how{.with_colour = with_colour, .space = space, .base_colour = true};
+    if (!stack.differs(slot)) return shade_on(stack, slot, substrate, how);
+    if (const auto mixed = stack.substrates->of_texel.find(slot); mixed != stack.substrates->of_texel.end())
+        return shade_mixed(stack, slot, substrate, mixed->second, how);
+    return shade_on(stack, slot, stack.substrates->of(slot, substrate),
+                    {.with_colour = with_colour, .space = space, .base_colour = false});
 }
 
 namespace {

@@ -9,6 +9,7 @@
 #include "core/system/progress.h"
 #include "ink/canvas/canvas.h"
 #include "ink/colour/base_colour.h"
+#include "ink/colour/substrate_map.h"
 #include "ink/composite/blend.h"
 #include "ink/spectra/colour_space.h"
 #include "ink/spectra/srgb.h"
@@ -74,11 +75,16 @@ struct Stack {
     std::vector<LayerView> layers;
     /// Base colours below the layers in place of the substrate's reflectance; null or empty: the substrate.
     const BaseColour* base_colour = nullptr;
+    /// Substrates of the model's parts in place of the one that a call states; null: that one everywhere. A part with a
+    /// substrate of its own has no base colour.
+    const SubstrateMap* substrates = nullptr;
 
     Stack(const Canvas& canvas) : layers{{&canvas}} {}
     explicit Stack(std::vector<LayerView> views) : layers(std::move(views)) {}
 
     bool has_base_colour() const { return base_colour && !base_colour->empty(); }
+    /// Whether a texel of the tile has another substrate than the one that a call states.
+    bool differs(std::uint32_t slot) const { return substrates && substrates->differs(slot); }
     bool touched(std::uint32_t slot) const;
     std::vector<std::uint32_t> touched_slots() const;  ///< of any layer, ascending
 };
@@ -147,6 +153,13 @@ AtlasMap<float> compose_height(const Stack& stack, const atlas::TexelMap& map, c
 /// glTF occlusion (255), roughness, metallic in R, G, B, 8 bit linear.
 AtlasMap<std::uint8_t> compose_orm8(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
                                     const ComposeOptions& options = {});
+
+/// Part of the light that passes each texel (1 channel, 8 bit linear): the substrate's transmission, hidden by ink. Has
+/// no texels where no substrate lets light pass.
+AtlasMap<std::uint8_t> compose_transmission8(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
+                                             const ComposeOptions& options = {});
+/// Whether any substrate of the stack lets light pass.
+bool has_transmission(const Stack& stack, const Substrate& substrate);
 
 /// Updates the tiles of `slots`, and the gutter texels that depend on them, in a map made by `compose_srgb8` with
 /// the same arguments.

@@ -35,10 +35,15 @@ struct MapFile {
     bool present;
 };
 
-std::vector<MapFile> map_files(const ModelMaps& maps, const ExportOptions& options) {
+bool is_gltf(const std::string& extension) {
+    return extension == ".glb" || extension == ".gltf";
+}
+
+std::vector<MapFile> map_files(const ModelMaps& maps, const ExportOptions& options, const std::string& extension) {
     return {{"base_colour", !maps.base_colour.texels.empty()},
             {"orm", !maps.orm.texels.empty()},
-            {"normal", has_height(maps, options)}};
+            {"normal", has_height(maps, options)},
+            {"transmission", is_gltf(extension) && !maps.transmission.texels.empty()}};
 }
 
 /// Fills in the pages of the scene and their UVs, which are returned; no UVs with one page and without parts
@@ -96,7 +101,8 @@ ModelMaps make_maps(const ink::Stack& stack, const atlas::TexelMap& texels, cons
                     const ink::ComposeOptions& options) {
     return {.base_colour = compose_srgb8(stack, texels, substrate, options),
             .orm = compose_orm8(stack, texels, substrate, options),
-            .height = compose_height(stack, texels, options)};
+            .height = compose_height(stack, texels, options),
+            .transmission = compose_transmission8(stack, texels, substrate, options)};
 }
 
 ink::AtlasMap<float> normal_map_float(const ink::AtlasMap<float>& height, double texel_size) {
@@ -229,7 +235,7 @@ std::vector<fs::path> exported_files(const fs::path& path, const ModelMaps& maps
     if (extension == ".glb" || extension == ".3mf") return files;
     const auto beside = [&](const std::string& tail) { return path.parent_path() / (safe_stem(path) + tail); };
     files.push_back(beside(extension == ".obj" ? ".mtl" : ".bin"));
-    for (const MapFile& map : map_files(maps, options))
+    for (const MapFile& map : map_files(maps, options, extension))
         for (std::uint32_t page = 0; map.present && page < atlas.pages; ++page)
             files.push_back(page_path(beside("_" + std::string(map.suffix) + ".png"), atlas, page));
     return files;
@@ -251,6 +257,8 @@ std::vector<Message> export_model(const fs::path& path, const mesh::TriangleMesh
         .source = source,
         // The base colour map holds the file's own colours, too.
         .decorated = decorated_parts(source, extension == ".3mf" ? std::vector<std::uint8_t>{} : options.painted),
+        .transmits = options.transmits,
+        .has_transmission = is_gltf(extension),
         .wedges = {},
         .corner_uvs = atlas.corner_uvs,
         .name = safe_stem(path),
@@ -262,14 +270,15 @@ std::vector<Message> export_model(const fs::path& path, const mesh::TriangleMesh
     std::vector<EncodedMap> encoded;
     report(options.progress, "export", 0);
     const ImageOptions colour{.srgb = true, .channel_names = {}}, data{.srgb = false, .channel_names = {}};
-    for (const MapFile& map : map_files(maps, options)) {
+    for (const MapFile& map : map_files(maps, options, extension)) {
         if (!map.present) continue;
         const std::string kind = map.suffix;
         ink::AtlasMap<std::uint8_t> made;
         if (kind == "normal") made = normal_map(maps.height, atlas.texel_size);
         const ink::AtlasMap<std::uint8_t>& whole = kind == "base_colour" ? maps.base_colour
                                                    : kind == "orm"       ? maps.orm
-                                                                         : made;
+                                                   : kind == "normal"    ? made
+                                                                         : maps.transmission;
         for (std::uint32_t page = 0; page < atlas.pages; ++page) {
             const fs::path file = page_path(scene.name + "_" + kind + ".png", atlas, page);
             encoded.push_back(

@@ -24,6 +24,8 @@ struct ModelMaps {
     ink::AtlasMap<std::uint8_t> base_colour;  ///< sRGB, 3 channels
     ink::AtlasMap<std::uint8_t> orm;          ///< occlusion, roughness, metallic; may be empty
     ink::AtlasMap<float> height;              ///< micrometres; may be empty
+    /// Part of the light that passes, 1 channel; empty: no part is of glass.
+    ink::AtlasMap<std::uint8_t> transmission = {};
 };
 
 /// Composes all maps of a canvas, or of the visible layers of a stack. With `options.seams` gutters continue over
@@ -53,13 +55,20 @@ struct ExportOptions {
     /// [n_parts] parts that get the decorated material, as `painted_parts` returns them. The others retain the file's
     /// material, if any. Empty: all parts get it.
     std::vector<std::uint8_t> painted;
+    /// [n_parts] parts whose decorated material lets light pass, as `transmitting_parts` returns them; empty: none.
+    std::vector<std::uint8_t> transmits = {};
     ProgressFn progress = {};
 };
 
-/// Returns for each part of the mesh (mesh::part_of) whether ink lies on it: a texel with more than 1e-4 film units of
-/// pigment or liquid in a visible layer. Less changes no colour code.
+/// Returns for each part of the mesh (mesh::part_of) whether ink lies on it, or whether it has a substrate of its own.
+/// Ink is a texel with more than 1e-4 film units of pigment or liquid in a visible layer. Less changes no colour code.
 std::vector<std::uint8_t> painted_parts(const ink::Stack& stack, const mesh::TriangleMesh& mesh,
                                         const atlas::Atlas& atlas, const atlas::TexelMap& texels);
+
+/// Returns for each part of the mesh whether the substrate of one of its texels lets light pass.
+std::vector<std::uint8_t> transmitting_parts(const ink::Stack& stack, const ink::Substrate& substrate,
+                                             const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas,
+                                             const atlas::TexelMap& texels);
 
 /// Writes a model with its maps. The extension chooses the format:
 ///
@@ -73,8 +82,9 @@ std::vector<std::uint8_t> painted_parts(const ink::Stack& stack, const mesh::Tri
 ///   printers (export_formats.h).
 ///
 /// Nodes and names are those of the file, else the groups. Parts without ink retain their material with pictures,
-/// transparency and extensions. From a glTF file such parts and all other content are written as they were read. OBJ
-/// gets the properties that MTL can express.
+/// transparency and extensions. Parts of glass get a decorated material with KHR_materials_transmission: light passes
+/// where there is no ink. OBJ and 3MF have no such map and write them opaque, with a note. From a glTF file such parts
+/// and all other content are written as they were read. OBJ gets the properties that MTL can express.
 ///
 /// Without maps (all empty) materials retain names and factors and lose the pictures that use the file's UVs.
 ///

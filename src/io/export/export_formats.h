@@ -28,7 +28,7 @@ Wedges split_wedges(const mesh::TriangleMesh& mesh, std::span<const Vec2f> corne
 
 /// A map of the decoration as a PNG file.
 struct EncodedMap {
-    std::string kind;  ///< base_colour, orm, normal
+    std::string kind;  ///< base_colour, orm, normal, transmission
     std::string file;  ///< name in the folder
     std::uint32_t page = 0;
     std::vector<unsigned char> png;
@@ -38,7 +38,9 @@ struct EncodedMap {
 struct ExportScene {
     const mesh::TriangleMesh& mesh;
     const mesh::SourceScene& source;
-    std::vector<std::uint8_t> decorated;  ///< [n_parts of source] gets the decorated material
+    std::vector<std::uint8_t> decorated;       ///< [n_parts of source] gets the decorated material
+    std::vector<std::uint8_t> transmits = {};  ///< [n_parts of source] its decorated material is glass; empty: none
+    bool has_transmission = false;             ///< the format has a map of it
     Wedges wedges;
     /// Decorated parts have the UVs of the triangle's page, other parts those of the file.
     std::span<const Vec2f> corner_uvs;

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <tuple>
 
 #include "core/error.h"
 #include "ink/spectra/srgb.h"
@@ -164,14 +165,14 @@ class Writer {
 
     /// Index of the decorated material of a page; it keeps what the file says of the backs of
     /// faces.
-    int decorated(std::uint32_t page, bool double_sided) {
-        const auto [it, is_new] = decorated_.try_emplace({page, double_sided}, -1);
+    int decorated(std::uint32_t page, bool double_sided, bool transmits) {
+        const auto [it, is_new] = decorated_.try_emplace({page, double_sided, transmits}, -1);
         if (!is_new) return it->second;
         json pbr{{"metallicFactor", 0}, {"roughnessFactor", 0.3}}, material;
-        material["name"] = scene_.material_name(page);
+        material["name"] = scene_.material_name(page) + (transmits ? ".glass" : "");
         if (double_sided) material["doubleSided"] = true;
         for (const EncodedMap& map : maps_) {
-            if (map.page != page) continue;
+            if (map.page != page || (map.kind == "transmission" && !transmits)) continue;
             const auto [texture, is_first] = textures_.try_emplace(&map, -1);
             if (is_first) texture->second = add_texture(map);
             if (map.kind == "base_colour") {
@@ -181,10 +182,19 @@ class Writer {
                 pbr["metallicFactor"] = pbr["roughnessFactor"] = 1;
             } else if (map.kind == "normal") {
                 material["normalTexture"] = {{"index", texture->second}};
+            } else if (map.kind == "transmission") {
+                material["extensions"]["KHR_materials_transmission"] = {
+                    {"transmissionFactor", 1}, {"transmissionTexture", {{"index", texture->second}}}};
+                use_extension("KHR_materials_transmission");
             }
         }
         material["pbrMetallicRoughness"] = std::move(pbr);
         return it->second = add("materials", std::move(material));
+    }
+
+    void use_extension(const char* name) {
+        json& used = list("extensionsUsed");
+        if (std::find(used.begin(), used.end(), name) == used.end()) used.push_back(name);
     }
 
     /// The file's material without its pictures, which lie by other UVs; where there are no maps to
@@ -224,12 +234,13 @@ class Writer {
             return out;
         }
         const bool double_sided = own && own->value("doubleSided", false);
+        const bool transmits = index < scene_.transmits.size() && scene_.transmits[index];
         std::map<std::uint32_t, std::vector<std::uint32_t>> by_page;
         for (const std::uint32_t t : triangles) by_page[scene_.page_of(t)].push_back(t);
         for (const auto& [page, here] : by_page) {
             json primitive = primitive_of(here, NodeFrame(part.transform), nullptr, !tangents_.empty());
-            primitive["material"] =
-                maps_.empty() && own ? without_pictures(part.own_material, *own) : decorated(page, double_sided);
+            primitive["material"] = maps_.empty() && own ? without_pictures(part.own_material, *own)
+                                                         : decorated(page, double_sided, transmits);
             own = own_material(part);  // the list has grown
             out.push_back(std::move(primitive));
         }
@@ -362,9 +373,9 @@ class Writer {
     bool embed_;
     json document_;
     std::vector<unsigned char> added_;
-    std::vector<Vec4f> tangents_;       ///< by wedge, where there is a map of normals
-    std::vector<std::uint32_t> local_;  ///< by wedge: vertex of the primitive in work
-    std::map<std::pair<std::uint32_t, bool>, int> decorated_;
+    std::vector<Vec4f> tangents_;                                     ///< by wedge, where there is a map of normals
+    std::vector<std::uint32_t> local_;                                ///< by wedge: vertex of the primitive in work
+    std::map<std::tuple<std::uint32_t, bool, bool>, int> decorated_;  ///< by page, double-sided, glass
     std::map<const EncodedMap*, int> textures_;
     std::map<std::int32_t, int> bare_;
     int sampler_ = -1;

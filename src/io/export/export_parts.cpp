@@ -32,6 +32,33 @@ TexelSet inked_texels(const ink::Stack& stack, std::uint32_t slot) {
     return inked;
 }
 
+/// Number of parts that the triangles, the scene and the groups name.
+std::size_t count_parts(const mesh::TriangleMesh& mesh) {
+    std::uint32_t n = 0;
+    for (std::size_t t = 0; t < mesh.n_triangles(); ++t) n = std::max(n, mesh::part_of(mesh, t) + 1);
+    if (mesh.scene) n = std::max(n, static_cast<std::uint32_t>(mesh.scene->parts.size()));
+    return std::max<std::size_t>(n, mesh.group_names.size());
+}
+
+/// Returns for each part whether `is` true for one of its texels.
+template <class Is>
+std::vector<std::uint8_t> parts_with(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas,
+                                     const atlas::TexelMap& texels, Is is) {
+    std::vector<std::uint8_t> with(count_parts(mesh), 0);
+    atlas::visit_texels(mesh, atlas, texels, [&](std::uint32_t slot, int texel, std::uint32_t triangle, const Vec3&) {
+        if (is(slot, static_cast<std::size_t>(texel)))
+            std::atomic_ref(with[mesh::part_of(mesh, triangle)]).store(1, std::memory_order_relaxed);
+    });
+    return with;
+}
+
+/// Index of a texel's substrate in the stack's map.
+std::uint8_t substrate_index(const ink::Stack& stack, std::uint32_t slot, std::size_t texel) {
+    if (!stack.substrates) return 0;
+    const auto mixed = stack.substrates->of_texel.find(slot);
+    return mixed == stack.substrates->of_texel.end() ? stack.substrates->of_slot[slot] : mixed->second[texel];
+}
+
 std::string name_of_part(const mesh::ScenePart& part) {
     return !part.object.empty() ? part.object : !part.group.empty() ? part.group : part.material;
 }
@@ -40,20 +67,24 @@ std::string name_of_part(const mesh::ScenePart& part) {
 
 std::vector<std::uint8_t> painted_parts(const ink::Stack& stack, const mesh::TriangleMesh& mesh,
                                         const atlas::Atlas& atlas, const atlas::TexelMap& texels) {
-    std::uint32_t n = 0;
-    for (std::size_t t = 0; t < mesh.n_triangles(); ++t) n = std::max(n, mesh::part_of(mesh, t) + 1);
-    if (mesh.scene) n = std::max(n, static_cast<std::uint32_t>(mesh.scene->parts.size()));
-    std::vector<std::uint8_t> painted(std::max<std::size_t>(n, mesh.group_names.size()), 0);
     std::vector<TexelSet> inked(texels.n_slots());
     const std::vector<std::uint32_t> touched = stack.touched_slots();
     parallel_for(touched.size(), 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) inked[touched[i]] = inked_texels(stack, touched[i]);
     });
-    atlas::visit_texels(mesh, atlas, texels, [&](std::uint32_t slot, int texel, std::uint32_t triangle, const Vec3&) {
-        if (inked[slot].test(static_cast<std::size_t>(texel)))
-            std::atomic_ref(painted[mesh::part_of(mesh, triangle)]).store(1, std::memory_order_relaxed);
+    return parts_with(mesh, atlas, texels, [&](std::uint32_t slot, std::size_t texel) {
+        return inked[slot].test(texel) || substrate_index(stack, slot, texel) != 0;
     });
-    return painted;
+}
+
+std::vector<std::uint8_t> transmitting_parts(const ink::Stack& stack, const ink::Substrate& substrate,
+                                             const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas,
+                                             const atlas::TexelMap& texels) {
+    if (!ink::has_transmission(stack, substrate)) return {};
+    return parts_with(mesh, atlas, texels, [&](std::uint32_t slot, std::size_t texel) {
+        const std::uint8_t index = substrate_index(stack, slot, texel);
+        return (index == 0 ? substrate : stack.substrates->others[index - 1u]).transmission > 0;
+    });
 }
 
 std::vector<std::vector<std::uint32_t>> triangles_of_parts(const ExportScene& scene) {
@@ -69,13 +100,19 @@ std::vector<Message> notes_on_parts(const ExportScene& scene) {
         notes.push_back(
             Message("{} of {} parts get the material 'decorated'; the others carry no ink and keep their own",
                     scene.decorated.size() - kept, scene.decorated.size()));
+    const auto glass = std::count(scene.transmits.begin(), scene.transmits.end(), 1);
+    if (glass > 0 && !scene.has_transmission)
+        notes.push_back(
+            Message("warning: {} of {} parts are of glass; this format has no map of it, so they are opaque", glass,
+                    scene.decorated.size()));
     const nlohmann::json document = parse_document(scene.source);
     const auto materials = document.find("materials");
     if (materials == document.end() || !materials->is_array()) return notes;
     for (std::size_t i = 0; i < scene.decorated.size(); ++i) {
         const mesh::ScenePart& part = scene.source.parts[i];
         const auto own = static_cast<std::size_t>(part.own_material);
-        if (!scene.decorated[i] || part.own_material < 0 || own >= materials->size()) continue;
+        const bool is_glass = i < scene.transmits.size() && scene.transmits[i] && scene.has_transmission;
+        if (!scene.decorated[i] || is_glass || part.own_material < 0 || own >= materials->size()) continue;
         const auto mode = (*materials)[own].find("alphaMode");
         if (mode != (*materials)[own].end() && *mode != "OPAQUE")
             notes.push_back(

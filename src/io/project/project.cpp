@@ -238,6 +238,11 @@ void settle_old_journal(const fs::path& path) {
     fs::remove(journal, ec);
 }
 
+// Earlier versions refuse a substrate with a key that they do not know.
+void raise_format_of_glass(SQLite::Database& db, const std::string& toml) {
+    if (toml.find("\ntransmission") != std::string::npos) raise_format(db, kPartsFormat);
+}
+
 }  // namespace
 
 ChangedOutside::ChangedOutside(const fs::path& project)
@@ -338,6 +343,7 @@ Project Project::create(const fs::path& path, const ModelToWrite& model, const s
             create_tables(db);
             put_meta(db, "written_by", std::string("tuft ") + TUFT_VERSION);
             put_preset(db, "substrate", {"", model.substrate});
+            raise_format_of_glass(db, model.substrate);
             store_model(db, model);
             transaction.commit();
         });
@@ -434,7 +440,10 @@ void Project::put_ink(const PresetText& preset) {
 }
 
 void Project::put_substrate(const std::string& toml) {
-    state_->change([&](SQLite::Database& db) { put_preset(db, "substrate", {"", toml}); });
+    state_->change([&](SQLite::Database& db) {
+        put_preset(db, "substrate", {"", toml});
+        raise_format_of_glass(db, toml);
+    });
 }
 
 std::vector<PresetText> Project::brushes() const {
@@ -454,7 +463,10 @@ std::vector<PresetText> Project::recolours() const {
 }
 
 void Project::put_shown_substrate(const std::string& toml) {
-    state_->change([&](SQLite::Database& db) { put_preset(db, "shown substrate", {"", toml}); });
+    state_->change([&](SQLite::Database& db) {
+        put_preset(db, "shown substrate", {"", toml});
+        raise_format_of_glass(db, toml);
+    });
 }
 
 std::string Project::shown_substrate() const {

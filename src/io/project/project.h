@@ -25,16 +25,17 @@
 /// and a cache of the texels. Called by `cli` and by the studio's paint thread.
 namespace tuft::io {
 
-inline constexpr int kProjectFormat = 9;  ///< highest format version that this program reads
-inline constexpr int kEdgesFormat = 9;    ///< needed for areas that end at edges, pictures, masks clear of edges
-inline constexpr int kRolledFormat = 8;   ///< needed for strokes with a roll of the holder
-inline constexpr int kStencilFormat = 7;  ///< needed for strokes with a stencil
-inline constexpr int kColoursFormat = 6;  ///< needed for colours of the model
-inline constexpr int kDrapedFormat = 5;   ///< needed for draped strokes
-inline constexpr int kPaletteFormat = 4;  ///< needed for a palette
-inline constexpr int kLayersFormat = 3;   ///< needed for layers, masks or fills
-inline constexpr int kFilmsFormat = 2;    ///< needed for dry films, soaked ink or water
-inline constexpr int kFirstFormat = 1;    ///< all else
+inline constexpr int kProjectFormat = 10;  ///< highest format version that this program reads
+inline constexpr int kPartsFormat = 10;    ///< needed for parts with a state, and for substrates of glass
+inline constexpr int kEdgesFormat = 9;     ///< needed for areas that end at edges, pictures, masks clear of edges
+inline constexpr int kRolledFormat = 8;    ///< needed for strokes with a roll of the holder
+inline constexpr int kStencilFormat = 7;   ///< needed for strokes with a stencil
+inline constexpr int kColoursFormat = 6;   ///< needed for colours of the model
+inline constexpr int kDrapedFormat = 5;    ///< needed for draped strokes
+inline constexpr int kPaletteFormat = 4;   ///< needed for a palette
+inline constexpr int kLayersFormat = 3;    ///< needed for layers, masks or fills
+inline constexpr int kFilmsFormat = 2;     ///< needed for dry films, soaked ink or water
+inline constexpr int kFirstFormat = 1;     ///< all else
 
 /// A preset's name and TOML text.
 using PresetText = std::pair<std::string, std::string>;

@@ -45,6 +45,7 @@ void raise_format_for(SQLite::Database& db, const stroke::JournalEntry& entry) {
     if (!t.stencil.empty()) raise_format(db, kStencilFormat);
     if (has_roll(t.samples) || (stroke && (stroke->settings.roll != 0 || stroke->settings.roll_follow)))
         raise_format(db, kRolledFormat);
+    if (entry.as<stroke::PartEdit>()) raise_format(db, kPartsFormat);
     const stroke::Fill* fill = entry.as<stroke::Fill>();
     const stroke::MaskEdit* mask = entry.as<stroke::MaskEdit>();
     if ((fill && fill->area &&

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
 #include "core/geometry/bounds.h"
@@ -15,8 +16,16 @@
 namespace tuft::mesh {
 namespace {
 
+/// Indices of the mesh's triangles by those of the tree; empty: the same.
+using TriangleIds = std::vector<std::uint32_t>;
+
+std::uint32_t id_of(const TriangleIds& ids, std::uint32_t primitive) {
+    return ids.empty() ? primitive : ids[primitive];
+}
+
 struct Closest {
     const TriangleMesh* mesh = nullptr;
+    const TriangleIds* ids = nullptr;
     Vec3 p{0};
     double slack = 0;  // metres: what rounding p to float can hide from the box tests
     double limit2 = 0;
@@ -53,7 +62,7 @@ Vec2 closest_weights(const Vec3& a, const Vec3& ab, const Vec3& ac, const Vec3& 
 
 bool visit_triangle(RTCPointQueryFunctionArguments* args) {
     Closest& best = *static_cast<Closest*>(args->userPtr);
-    const std::uint32_t t = args->primID;
+    const std::uint32_t t = id_of(*best.ids, args->primID);
     const Vec3 a = best.mesh->position(t, 0);
     const Vec3 ab = best.mesh->position(t, 1) - a;
     const Vec3 ac = best.mesh->position(t, 2) - a;
@@ -77,6 +86,7 @@ bool visit_triangle(RTCPointQueryFunctionArguments* args) {
 
 struct Nearest {
     const TriangleMesh* mesh = nullptr;
+    const TriangleIds* ids = nullptr;
     Vec3 p{0};
     double slack = 0, limit = 0;
     std::size_t k = 0;
@@ -87,7 +97,7 @@ struct Nearest {
 /// triangles within the k-th best distance meets every triangle of every vertex kept.
 bool visit_vertices(RTCPointQueryFunctionArguments* args) {
     Nearest& best = *static_cast<Nearest*>(args->userPtr);
-    const std::uint32_t t = args->primID;
+    const std::uint32_t t = id_of(*best.ids, args->primID);
     const Vec3 a = best.mesh->position(t, 0);
     const Vec3 area = glm::cross(best.mesh->position(t, 1) - a, best.mesh->position(t, 2) - a);
     for (int corner = 0; corner < 3; ++corner) {
@@ -151,14 +161,31 @@ bool is_ray(const Vec3f& origin, const Vec3f& direction, float t_min, float t_ma
 
 }  // namespace
 
+namespace {
+
+std::vector<std::array<std::uint32_t, 3>> some_triangles(const TriangleMesh& mesh, const TriangleIds& ids) {
+    std::vector<std::array<std::uint32_t, 3>> some;
+    some.reserve(ids.size());
+    for (const std::uint32_t t : ids) some.push_back(mesh.triangles[t]);
+    return some;
+}
+
+}  // namespace
+
 struct SurfaceQuery::State {
     const TriangleMesh* mesh = nullptr;
+    TriangleIds ids;
+    std::vector<std::array<std::uint32_t, 3>> some;  ///< of `ids`; the tree reads them where they are
     RayTree tree;
 
     explicit State(const TriangleMesh& m) : mesh(&m), tree(m.positions, m.triangles) {}
+    State(const TriangleMesh& m, TriangleIds of)
+        : mesh(&m), ids(std::move(of)), some(some_triangles(m, ids)), tree(m.positions, some) {}
 };
 
 SurfaceQuery::SurfaceQuery(const TriangleMesh& mesh) : state_(std::make_unique<State>(mesh)) {}
+SurfaceQuery::SurfaceQuery(const TriangleMesh& mesh, std::vector<std::uint32_t> triangles)
+    : state_(std::make_unique<State>(mesh, std::move(triangles))) {}
 
 SurfaceQuery::~SurfaceQuery() = default;
 SurfaceQuery::SurfaceQuery(SurfaceQuery&&) noexcept = default;
@@ -168,6 +195,7 @@ std::optional<SurfacePoint> SurfaceQuery::closest_point(const Vec3& p, double ma
     if (!within(p, kEmbreeLimit) || !(max_distance >= 0)) return std::nullopt;
     Closest best;
     best.mesh = state_->mesh;
+    best.ids = &state_->ids;
     best.p = p;
     best.slack = rounding_slack(*state_->mesh, p);
     best.limit2 = max_distance * max_distance;
@@ -186,6 +214,7 @@ std::vector<NearVertex> SurfaceQuery::nearest_vertices(const Vec3& p, int k, dou
     if (!within(p, kEmbreeLimit) || k <= 0 || !(max_distance >= 0)) return {};
     Nearest best;
     best.mesh = state_->mesh;
+    best.ids = &state_->ids;
     best.p = p;
     best.slack = rounding_slack(*state_->mesh, p);
     best.limit = max_distance;
@@ -223,7 +252,7 @@ RayHit SurfaceQuery::trace(const Vec3f& origin, const Vec3f& direction, float t_
     rtcInitIntersectContext(&context);
     rtcIntersect1(state_->tree.scene(), &context, &rayhit);
     if (rayhit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    return {rayhit.hit.primID, rayhit.hit.u, rayhit.hit.v, rayhit.ray.tfar};
+    return {id_of(state_->ids, rayhit.hit.primID), rayhit.hit.u, rayhit.hit.v, rayhit.ray.tfar};
 }
 
 bool SurfaceQuery::blocked(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max) const {

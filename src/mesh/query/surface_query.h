@@ -31,6 +31,9 @@ struct NearVertex {
 class SurfaceQuery {
   public:
     explicit SurfaceQuery(const TriangleMesh& mesh);
+    /// Of these triangles alone, [n] indices in ascending order: the others are as if they were not there. Answers
+    /// have the indices of the mesh, and the bits of a query of all triangles where that meets these.
+    SurfaceQuery(const TriangleMesh& mesh, std::vector<std::uint32_t> triangles);
     ~SurfaceQuery();
     SurfaceQuery(SurfaceQuery&&) noexcept;
     SurfaceQuery& operator=(SurfaceQuery&&) noexcept;

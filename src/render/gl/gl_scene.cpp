@@ -31,6 +31,7 @@ struct SolidVertex {
 struct Cluster {
     Vec3f lo{1e30f}, hi{-1e30f};
     std::uint32_t first = 0, count = 0;  // indices
+    float transmission = 0;              // of each of its triangles
 };
 constexpr std::size_t kClusterTriangles = 192, kMostClusters = 4096;
 
@@ -104,10 +105,14 @@ struct GlScene::State {
     GLuint mesh_program = 0, solid_program = 0, backdrop_program = 0, atlas_program = 0;
     GLuint mesh_array = 0, mesh_buffer = 0, mesh_index = 0;
     GLuint cluster_array = 0, cluster_index = 0;
-    std::vector<Cluster> clusters;
-    std::vector<GLuint> queries;       // one per cluster: whether any of it is seen
-    std::vector<std::uint8_t> hidden;  // likewise, after the answers
-    bool asked = false;                // the answers are still to be read
+    std::vector<Vec3f> positions;        // of the vertices in mesh_buffer
+    std::vector<std::uint32_t> indices;  // of all triangles, in the file's order
+    std::vector<std::uint32_t> order;    // of the triangles in clusters
+    std::vector<Cluster> clusters;       // opaque ones, then those of glass
+    std::size_t n_opaque = 0;            // clusters
+    std::vector<GLuint> queries;         // one per cluster: whether any of it is seen
+    std::vector<std::uint8_t> hidden;    // likewise, after the answers
+    bool asked = false;                  // the answers are still to be read
     GLuint solid_array = 0, solid_buffer = 0, solid_index = 0, empty_array = 0;
     GLuint texture = 0, colour_buffer = 0, colour_texture = 0;
     GLsizei n_indices = 0;
@@ -171,26 +176,48 @@ void GlScene::set_mesh(const mesh::TriangleMesh& mesh, std::span<const Vec2f> co
             if (is_new) vertices.push_back(v);
             indices.push_back(at->second);
         }
-    s.n_indices = static_cast<GLsizei>(indices.size());
-    std::vector<std::uint32_t> sorted;
-    sorted.reserve(indices.size());
+    fill_buffer(GL_ARRAY_BUFFER, s.mesh_buffer, vertices, GL_STATIC_DRAW);
+    s.positions.clear();
+    s.positions.reserve(vertices.size());
+    for (const Vertex& v : vertices) s.positions.push_back(v.position);
+    s.indices = std::move(indices);
+    s.order = spatial_order(mesh);
+    set_parts({}, {});
+}
+
+void GlScene::set_parts(std::span<const std::uint8_t> hidden, std::span<const float> transmission) {
+    State& s = *state_;
+    const auto passes = [&](std::uint32_t t) { return transmission.empty() ? 0.0f : transmission[t]; };
+    std::vector<std::uint32_t> numbered = s.indices, sorted;
+    // A triangle without extent is not drawn, and the others keep their numbers.
+    for (std::size_t t = 0; t < hidden.size(); ++t)
+        if (hidden[t]) numbered[3 * t + 1] = numbered[3 * t + 2] = numbered[3 * t];
+    sorted.reserve(s.indices.size());
     s.clusters.clear();
     glDeleteQueries(static_cast<GLsizei>(s.queries.size()), s.queries.data());
     s.queries.clear();
-    const std::size_t most = std::max(kClusterTriangles, mesh.n_triangles() / kMostClusters + 1);
-    for (const std::uint32_t t : spatial_order(mesh)) {
-        if (s.clusters.empty() || s.clusters.back().count >= 3 * most)
-            s.clusters.push_back({.first = static_cast<std::uint32_t>(sorted.size())});
-        Cluster& cluster = s.clusters.back();
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t v = indices[3 * t + k];
-            cluster.lo = glm::min(cluster.lo, vertices[v].position);
-            cluster.hi = glm::max(cluster.hi, vertices[v].position);
-            sorted.push_back(v);
+    const std::size_t n_triangles = s.indices.size() / 3;
+    const std::size_t most = std::max(kClusterTriangles, n_triangles / kMostClusters + 1);
+    for (const bool glass : {false, true}) {
+        s.n_opaque = s.clusters.size();
+        for (const std::uint32_t t : s.order) {
+            const float part = passes(t);
+            if ((part > 0) != glass || (!hidden.empty() && hidden[t])) continue;
+            const bool goes_on = s.clusters.size() > (glass ? s.n_opaque : 0) && s.clusters.back().count < 3 * most &&
+                                 s.clusters.back().transmission == part;
+            if (!goes_on)
+                s.clusters.push_back({.first = static_cast<std::uint32_t>(sorted.size()), .transmission = part});
+            Cluster& cluster = s.clusters.back();
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t v = s.indices[3 * t + k];
+                cluster.lo = glm::min(cluster.lo, s.positions[v]);
+                cluster.hi = glm::max(cluster.hi, s.positions[v]);
+                sorted.push_back(v);
+            }
+            cluster.count += 3;
         }
-        cluster.count += 3;
     }
-    fill_buffer(GL_ARRAY_BUFFER, s.mesh_buffer, vertices, GL_STATIC_DRAW);
+    s.n_indices = static_cast<GLsizei>(numbered.size());
     // The same triangles twice: in the file's order, by which they are numbered, and in clusters.
     const auto make_array = [&](GLuint array, GLuint index, const std::vector<std::uint32_t>& values) {
         glBindVertexArray(array);
@@ -201,8 +228,12 @@ void GlScene::set_mesh(const mesh::TriangleMesh& mesh, std::span<const Vec2f> co
         attribute(2, 2, sizeof(Vertex), offsetof(Vertex, uv));
         glBindVertexArray(0);
     };
-    make_array(s.mesh_array, s.mesh_index, indices);
+    make_array(s.mesh_array, s.mesh_index, numbered);
     make_array(s.cluster_array, s.cluster_index, sorted);
+}
+
+bool GlScene::has_glass() const {
+    return state_->n_opaque < state_->clusters.size();
 }
 
 void GlScene::set_triangle_colours(std::span<const std::array<std::uint8_t, 4>> colours) {
@@ -245,13 +276,7 @@ void GlScene::update_tiles(std::span<const TilePixels> tiles) {
     }
 }
 
-namespace {
-
-// Mesa's software driver is not exact to the sample at the border of what is cut: it draws up to a
-// few pixels more or less. So more is drawn than is asked for; outside it stays as it was.
-constexpr int kBlock = 8;
-
-struct VisibleCluster {
+struct GlScene::VisibleCluster {
     double nearest = 0;  // metres from the eye
     std::uint32_t cluster = 0;
 
@@ -259,8 +284,8 @@ struct VisibleCluster {
 };
 
 // Clusters that reach into a part of the picture, the nearest first: always in the same order.
-std::vector<VisibleCluster> clusters_in(const std::vector<Cluster>& clusters, const GlCamera& c,
-                                        const PixelRect& part) {
+std::vector<GlScene::VisibleCluster> GlScene::clusters_in(const GlCamera& c, const PixelRect& part) const {
+    const std::vector<Cluster>& clusters = state_->clusters;
     std::vector<VisibleCluster> seen;
     for (std::uint32_t i = 0; i < clusters.size(); ++i) {
         const Cluster& cluster = clusters[i];
@@ -280,6 +305,12 @@ std::vector<VisibleCluster> clusters_in(const std::vector<Cluster>& clusters, co
     std::sort(seen.begin(), seen.end());
     return seen;
 }
+
+namespace {
+
+// Mesa's software driver is not exact to the sample at the border of what is cut: it draws up to a
+// few pixels more or less. So more is drawn than is asked for; outside it stays as it was.
+constexpr int kBlock = 8;
 
 const void* start_of(const Cluster& cluster) {
     return reinterpret_cast<const void*>(cluster.first * sizeof(std::uint32_t));
@@ -321,8 +352,29 @@ void GlScene::begin_model(const GlCamera& c, const GlLight& light, const DrawOpt
     glUniform1f(at("u_roughness"), options.roughness);
     glUniform1f(at("u_relief"), light.relief);
     glUniform4fv(at("u_section"), 1, glm::value_ptr(options.section));
+    glUniform1f(at("u_transmission"), 0);
     s.bind_atlas(s.mesh_program, options);
     glBindVertexArray(options.shading == Shading::triangles ? s.mesh_array : s.cluster_array);
+}
+
+// Nothing of it hides what is drawn after it.
+void GlScene::draw_glass(std::span<const VisibleCluster> seen, const DrawOptions& options) {
+    const State& s = *state_;
+    const bool lit = options.shading == Shading::glaze || options.shading == Shading::clay;
+    const GLint at = glGetUniformLocation(s.mesh_program, "u_transmission");
+    if (lit) {
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+        glDepthMask(GL_FALSE);
+    }
+    for (auto one = seen.rbegin(); one != seen.rend(); ++one) {
+        if (one->cluster < s.n_opaque) continue;
+        const Cluster& cluster = s.clusters[one->cluster];
+        if (lit) glUniform1f(at, cluster.transmission);
+        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(cluster.count), GL_UNSIGNED_INT, start_of(cluster));
+    }
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
 }
 
 void GlScene::draw_model(const GlCamera& c, const GlLight& light, const DrawOptions& options, bool still) {
@@ -333,7 +385,7 @@ void GlScene::draw_model(const GlCamera& c, const GlLight& light, const DrawOpti
     if (options.shading == Shading::triangles) {
         glDrawElements(GL_TRIANGLES, s.n_indices, GL_UNSIGNED_INT, nullptr);
     } else {
-        const std::vector<VisibleCluster> seen = clusters_in(s.clusters, c, {0, 0, c.width, c.height});
+        const std::vector<VisibleCluster> seen = clusters_in(c, {0, 0, c.width, c.height});
         s.asked = still;
         if (still && s.queries.empty()) {
             s.queries.resize(s.clusters.size());
@@ -341,12 +393,14 @@ void GlScene::draw_model(const GlCamera& c, const GlLight& light, const DrawOpti
         }
         if (still) s.hidden.assign(s.clusters.size(), 1);
         for (const VisibleCluster& one : seen) {
+            if (one.cluster >= s.n_opaque) continue;
             const Cluster& cluster = s.clusters[one.cluster];
             // What is nearer is drawn already: where not a sample is seen now, none will be.
             if (still) glBeginQuery(GL_ANY_SAMPLES_PASSED, s.queries[one.cluster]), s.hidden[one.cluster] = 0;
             glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(cluster.count), GL_UNSIGNED_INT, start_of(cluster));
             if (still) glEndQuery(GL_ANY_SAMPLES_PASSED);
         }
+        if (has_glass()) draw_glass(seen, options);
     }
     end_model();
 }
@@ -368,7 +422,7 @@ void GlScene::redraw_model(const GlCamera& c, const GlLight& light, const DrawOp
     glScissor(x, y, part.x + part.width + kBlock - x, part.y + part.height + kBlock - y);
     std::vector<GLsizei> counts;
     std::vector<const void*> starts;
-    for (const VisibleCluster& one : clusters_in(s.clusters, c, part)) {
+    for (const VisibleCluster& one : clusters_in(c, part)) {
         const Cluster& cluster = s.clusters[one.cluster];
         const bool meets = std::ranges::any_of(changed, [&](const GlBox& box) {
             return glm::all(glm::lessThanEqual(box.lo, cluster.hi)) && glm::all(glm::lessThanEqual(cluster.lo, box.hi));

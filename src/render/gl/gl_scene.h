@@ -79,6 +79,13 @@ class GlScene {
     /// Uploads the mesh; `corner_uvs` [3 n_triangles], v up. Corners that agree in place,
     /// normal and uv become one vertex.
     void set_mesh(const mesh::TriangleMesh& mesh, std::span<const Vec2f> corner_uvs);
+    /// Leaves out triangles, [n_triangles] 1: hidden; empty: none. `transmission` [n_triangles]: part of the light that
+    /// passes a triangle without ink; empty: none lets light pass. Glass is drawn last, the farthest first, in the lit
+    /// views: it reflects as a coat does, and ink of height h hides what is behind it by 1 − exp(−h / 0.625 µm), which
+    /// is exp(−4) per film unit. `set_mesh` shows all triangles, opaque.
+    void set_parts(std::span<const std::uint8_t> hidden, std::span<const float> transmission);
+    /// Whether a visible triangle lets light pass.
+    bool has_glass() const;
     /// sRGB-encoded colours for `Shading::triangles` [n_triangles].
     void set_triangle_colours(std::span<const std::array<std::uint8_t, 4>> colours);
     void set_texture(const MapPixels& map);
@@ -89,7 +96,8 @@ class GlScene {
     /// Draws the model. With `still` it records the hidden surfaces, which makes `redraw_model` cheaper.
     void draw_model(const GlCamera& camera, const GlLight& light, const DrawOptions& options, bool still = false);
     /// Redraws the surface inside the boxes in a part of the picture, after the texture changed there. Camera,
-    /// section and depth must be those of the last `draw_model`. The result is that of `draw_model` now.
+    /// section and depth must be those of the last `draw_model`. The result is that of `draw_model` now. Not for a
+    /// scene with glass.
     void redraw_model(const GlCamera& camera, const GlLight& light, const DrawOptions& options, const PixelRect& part,
                       std::span<const GlBox> changed);
     /// Draws the atlas flat into a part of the picture: `centre` in uv lies in its middle,
@@ -104,7 +112,10 @@ class GlScene {
     void draw_solid(const GlCamera& camera, const GlLight& light, const GlSolid& solid, float opacity);
 
   private:
+    struct VisibleCluster;
     void begin_model(const GlCamera& camera, const GlLight& light, const DrawOptions& options);
+    std::vector<VisibleCluster> clusters_in(const GlCamera& camera, const PixelRect& part) const;
+    void draw_glass(std::span<const VisibleCluster> seen, const DrawOptions& options);
 
     struct State;
     std::unique_ptr<State> state_;

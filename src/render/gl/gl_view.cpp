@@ -92,7 +92,8 @@ void GlView::warm_up(GlScene& scene, const Frame& f) {
     const PixelRect middle{c.width / 2, c.height / 2, 1, 1};
     const GlBox everything{Vec3f(-1e30f), Vec3f(1e30f)};
     s.smooth.bind();
-    scene.redraw_model(c, f.appearance.light, f.appearance.options, middle, std::span(&everything, 1));
+    if (!scene.has_glass())
+        scene.redraw_model(c, f.appearance.light, f.appearance.options, middle, std::span(&everything, 1));
     const double depth = 1.1 * c.near, size = 0.01 * depth;
     const Vec3 at = c.eye + depth * c.forward;
     GlSolid solid{.positions = {Vec3f(at - size * c.right), Vec3f(at + size * c.right), Vec3f(at + size * c.up)},
@@ -115,7 +116,9 @@ void GlView::draw(GlScene& scene, const Frame& f) {
         scene.draw_backdrop(c, f.appearance.low, f.appearance.high);
         scene.draw_model(c, f.appearance.light, f.appearance.options, still);
     };
-    const bool same = s.camera && *s.camera == c && s.appearance == f.appearance;
+    // What is behind glass must be drawn again under it.
+    const bool through_glass = scene.has_glass() && !s.changed.empty();
+    const bool same = s.camera && *s.camera == c && s.appearance == f.appearance && !through_glass;
     const bool spare = s.slow && f.moving;
     if (!same || (!s.is_smooth && !spare)) {
         const auto before = std::chrono::steady_clock::now();

@@ -84,7 +84,9 @@ void StampBatch::write_tile(std::span<const TileStamp> stamps, std::span<const i
         }
         if (!toned) toned = find_tone(slot, batch_[stamps[stamps.size() / 2].stamp], tone);
         if (stamp.by_hair) target_.expose_grain(slot, exposure, stamp.grain_film);
-        given[k] = ink::deposit(target_.canvas(), slot, exposure, tile.area, stamp.ink, laws[stamps[k].stamp],
+        ink::DepositParams ink = stamp.ink;
+        ink.capacity = target_.capacity(slot, ink.capacity);
+        given[k] = ink::deposit(target_.canvas(), slot, exposure, tile.area, ink, laws[stamps[k].stamp],
                                 *toned ? std::span<const float>(tone) : std::span<const float>());
     }
 }

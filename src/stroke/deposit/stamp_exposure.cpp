@@ -89,13 +89,20 @@ ink::NodeContents StampExposure::exchange(const ink::TransferParams& params, dou
     return act_on_tiles([&](Tile& tile, const ink::HatBasis& basis) {
         if (canvas.has_film(tile.slot, ink::kOpenFilm))
             ink::bed_paste(canvas, tile.slot, ink::paste_height(canvas, tile.slot), tile.exposure, loose);
-        ink::transfer(canvas, {stamped(tile, target_, ds), tile.places, basis}, params, tile.given);
+        const ink::ContactTile on{stamped(tile, target_, ds), tile.places, basis};
+        const float capacity = target_.capacity(tile.slot, params.deposit.capacity);
+        if (capacity == params.deposit.capacity) return ink::transfer(canvas, on, params, tile.given);
+        ink::TransferParams on_tile = params;
+        on_tile.deposit.capacity = capacity;
+        ink::transfer(canvas, on, on_tile, tile.given);
     });
 }
 
 ink::NodeContents StampExposure::deposit(const ink::DepositParams& params, const ink::NodeMixes& mixes, double ds) {
     return act_on_tiles([&](Tile& tile, const ink::HatBasis& basis) {
-        ink::deposit_mixed(target_.canvas(), stamped(tile, target_, ds), basis, params, mixes, tile.given);
+        ink::DepositParams on_tile = params;
+        on_tile.capacity = target_.capacity(tile.slot, params.capacity);
+        ink::deposit_mixed(target_.canvas(), stamped(tile, target_, ds), basis, on_tile, mixes, tile.given);
     });
 }
 
@@ -105,7 +112,9 @@ StampExposure::Exchanged StampExposure::plough(const ink::PasteParams& params, c
             pastes_.emplace(tile.slot, std::make_unique<ink::Plane>(ink::open_pigment(target_.canvas(), tile.slot)));
     Exchanged exchanged;
     exchanged.given = act_on_tiles([&](Tile& tile, const ink::HatBasis& basis) {
-        ink::deposit_paste(target_.canvas(), {stamped(tile, target_, ds), tile.places, basis}, params, mixes,
+        ink::PasteParams on_tile = params;
+        on_tile.capacity = static_cast<double>(target_.capacity(tile.slot, static_cast<float>(params.capacity)));
+        ink::deposit_paste(target_.canvas(), {stamped(tile, target_, ds), tile.places, basis}, on_tile, mixes,
                            *pastes_.at(tile.slot), {tile.given, tile.taken});
     });
     for (const Tile& tile : tiles_) add(exchanged.taken, tile.taken);

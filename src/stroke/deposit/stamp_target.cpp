@@ -9,14 +9,8 @@
 namespace tuft::stroke {
 
 StampTarget::StampTarget(const Model& model, ink::Canvas& canvas, const ink::Substrate& substrate,
-                         const MaskTexels* mask, const TilePlan* plan, PlanScratchPool& scratch)
-    : model_(model),
-      canvas_(canvas),
-      mask_(mask),
-      plan_(plan),
-      scratch_(scratch),
-      grain_rms_(substrate.relief),
-      grain_length_(substrate.relief_length) {}
+                         const TargetLimits& limits, PlanScratchPool& scratch)
+    : model_(model), canvas_(canvas), substrate_(substrate), limits_(limits), scratch_(scratch) {}
 
 void StampTarget::prepare_grain() {
     if (grain_.empty()) grain_.resize(model_.texels.n_slots());
@@ -26,14 +20,14 @@ const StampTarget::Grain& StampTarget::grain(std::uint32_t slot) {
     if (!grain_[slot]) {
         grain_[slot] = std::make_unique<Grain>();
         atlas::TexelShape buffer;
-        ink::relief_of_tile(atlas::shape_of(model_.texels, slot, buffer), static_cast<double>(grain_length_),
-                            *grain_[slot]);
+        ink::relief_of_tile(atlas::shape_of(model_.texels, slot, buffer),
+                            static_cast<double>(substrate(slot).relief_length), *grain_[slot]);
     }
     return *grain_[slot];
 }
 
 void StampTarget::expose_grain(std::uint32_t slot, std::array<float, atlas::kTileTexels>& exposure, double film) {
-    ink::expose_relief(exposure, grain(slot), grain_rms_, static_cast<float>(film));
+    ink::expose_relief(exposure, grain(slot), substrate(slot).relief, static_cast<float>(film));
 }
 
 void StampTarget::apply_grain(std::uint32_t slot, std::span<float, atlas::kTileTexels> tone, float share) {
@@ -41,9 +35,10 @@ void StampTarget::apply_grain(std::uint32_t slot, std::span<float, atlas::kTileT
 }
 
 bool StampTarget::may_use(std::uint32_t slot) const {
-    if (!plan_) return true;
-    const auto use = std::ranges::lower_bound(*plan_, slot, {}, &TileUse::slot);
-    return use != plan_->end() && use->slot == slot && use->first <= part_ && part_ <= use->last;
+    const TilePlan* plan = limits_.plan;
+    if (!plan) return true;
+    const auto use = std::ranges::lower_bound(*plan, slot, {}, &TileUse::slot);
+    return use != plan->end() && use->slot == slot && use->first <= part_ && part_ <= use->last;
 }
 
 void StampTarget::snapshot(std::uint32_t slot) {

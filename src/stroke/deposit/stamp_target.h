@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <exception>
 #include <memory>
 #include <span>
@@ -8,6 +9,7 @@
 
 #include "ink/canvas/canvas.h"
 #include "ink/colour/pigments.h"
+#include "ink/colour/substrate_map.h"
 #include "stroke/deposit/plan_scratch_pool.h"
 #include "stroke/surface/mask_texels.h"
 #include "stroke/surface/model.h"
@@ -31,21 +33,33 @@ struct TileUse {
 /// Tiles that a stroke may use, ascending by slot.
 using TilePlan = std::vector<TileUse>;
 
+/// What limits a stroke on its texels. All that is referred to must outlive the target.
+struct TargetLimits {
+    const MaskTexels* mask = nullptr;               ///< texels that may change; null: all
+    const TilePlan* plan = nullptr;                 ///< tiles that may be used; null: all
+    const ink::SubstrateMap* substrates = nullptr;  ///< of the model's parts; null: one substrate everywhere
+    float standing = 0;                             ///< film units of the ink that stand on any substrate
+};
+
 /// The canvas that a stroke writes to, with its mask, the substrate's grain, and copies of tiles before the stroke, for
 /// undo.
 class StampTarget {
   public:
     using Grain = std::array<float, atlas::kTileTexels>;
 
-    /// All must outlive it. `mask`: texels that may change; null: all. `plan`: tiles that may be
-    /// used; null: all.
-    StampTarget(const Model& model, ink::Canvas& canvas, const ink::Substrate& substrate, const MaskTexels* mask,
-                const TilePlan* plan, PlanScratchPool& scratch);
+    /// All must outlive it. Grain and capacity of a tile are those of the substrate of most of its texels.
+    StampTarget(const Model& model, ink::Canvas& canvas, const ink::Substrate& substrate, const TargetLimits& limits,
+                PlanScratchPool& scratch);
 
     const Model& model() const { return model_; }
     const atlas::TexelMap& texels() const { return model_.texels; }
     ink::Canvas& canvas() { return canvas_; }
-    const MaskTexels* mask() const { return mask_; }
+    const MaskTexels* mask() const { return limits_.mask; }
+    /// Returns the film units that stay on a texel of a tile, all inks together. `otherwise`: where all parts are of
+    /// one substrate.
+    float capacity(std::uint32_t slot, float otherwise) const {
+        return limits_.substrates ? std::max(substrate(slot).capacity, limits_.standing) : otherwise;
+    }
     PlanScratchPool& scratch() { return scratch_; }
 
     /// Sets the part of the path that is painted now, for the plan.
@@ -74,14 +88,16 @@ class StampTarget {
   private:
     const Grain& grain(std::uint32_t slot);
     bool may_use(std::uint32_t slot) const;
+    const ink::Substrate& substrate(std::uint32_t slot) const {
+        return limits_.substrates ? limits_.substrates->of(slot, substrate_) : substrate_;
+    }
 
     const Model& model_;
     ink::Canvas& canvas_;
-    const MaskTexels* mask_;
-    const TilePlan* plan_;
+    const ink::Substrate& substrate_;
+    TargetLimits limits_;
     std::uint32_t part_ = 0;
     PlanScratchPool& scratch_;
-    float grain_rms_, grain_length_;             ///< rms height and length of the substrate's grain, metres
     std::vector<std::unique_ptr<Grain>> grain_;  ///< by slot, evaluated at first use by dry hair
     std::unordered_map<std::uint32_t, ink::TileSnapshot> before_;
     bool on_relief_ = false;

@@ -17,7 +17,10 @@ std::vector<LayerTexels> Appearance::shown_layers() const {
 
 ink::Stack Appearance::stack() const {
     ink::Stack stack{std::vector<ink::LayerView>{}};
-    if (!previewed_) stack.base_colour = &model_.base_colour;  // another substrate is seen whole
+    if (!previewed_) {  // another substrate is seen whole
+        stack.base_colour = &model_.base_colour;
+        stack.substrates = parts_.substrates();
+    }
     for (const LayerTexels& texels : shown_layers()) {
         const Layer& layer = layers_.layer(texels.layer);
         stack.layers.push_back({texels.canvas, static_cast<float>(layer.opacity), layer.blend});

@@ -10,6 +10,7 @@
 #include "ink/composite/composite.h"
 #include "stroke/document/materials.h"
 #include "stroke/document/palette.h"
+#include "stroke/document/part_set.h"
 
 /// \file
 /// How a document is shown, apart from what was painted: layers alone, another substrate, other colours. Maps, exports
@@ -20,13 +21,15 @@ namespace tuft::stroke {
 class Appearance {
   public:
     /// All must outlive it.
-    Appearance(const Model& model, const Materials& materials, LayerStack& layers, Palette& palette)
-        : model_(model), materials_(materials), layers_(layers), palette_(palette) {}
+    Appearance(const Model& model, const Materials& materials, LayerStack& layers, Palette& palette,
+               const PartSet& parts)
+        : model_(model), materials_(materials), layers_(layers), palette_(palette), parts_(parts) {}
 
     /// Layers to be seen with their texels, the lowest first: the visible ones, or those of `show_only`, of an opacity
     /// above 0.
     std::vector<LayerTexels> shown_layers() const;
-    /// The same for `ink::compose_*`, over the model's base colours; over a previewed substrate without them.
+    /// The same for `ink::compose_*`, over the model's base colours and the substrates of its parts; over a previewed
+    /// substrate without either.
     ink::Stack stack() const;
     /// What the ink is shown on: the previewed substrate, else the one painted on.
     const ink::Substrate& substrate() const { return previewed_ ? *previewed_ : materials_.substrate(); }
@@ -60,6 +63,7 @@ class Appearance {
     const Materials& materials_;
     LayerStack& layers_;
     Palette& palette_;
+    const PartSet& parts_;
     std::vector<std::uint32_t> shown_;  ///< of `show_only`
     std::optional<ink::Substrate> previewed_;
     std::map<std::string, ink::Ink> recolours_;  ///< by the name of the ink painted with

@@ -195,8 +195,7 @@ FillResult apply_area(const Fill& fill, const PaintTarget& target, const FlatTex
                 if (!any) continue;
                 coat.first = mixes[stop];
                 coat.second = mixes[next];
-                deposited[i] +=
-                    ink::add_coat(target.canvas, slot, map.tiles[slot].area, coat, target.substrate.capacity);
+                deposited[i] += ink::add_coat(target.canvas, slot, map.tiles[slot].area, coat, target.capacity(slot));
             }
         }
     });

@@ -47,7 +47,7 @@ void set_coat(ink::Coat& coat, const Fill& fill, const atlas::TexelMap& map, con
 
 FillResult apply_fill(const Fill& fill, const PaintTarget& target, const FillMixes& mixes) {
     check_fill(fill);
-    const std::vector<std::uint8_t> charts = charts_of(fill, target.model);
+    const std::vector<std::uint8_t> charts = charts_of(fill, target.model, target.surface);
     const std::vector<std::uint32_t> slots = slots_of(charts, target);
     FillResult result;
     for (const std::uint32_t slot : slots) result.before.push_back(target.canvas.snapshot(slot));
@@ -62,7 +62,7 @@ FillResult apply_fill(const Fill& fill, const PaintTarget& target, const FillMix
             set_coat(coat, fill, map, charts, slots[i]);
             if (target.mask) target.mask->apply(slots[i], coat.film);
             added[i] =
-                ink::add_coat(target.canvas, slots[i], map.tiles[slots[i]].area, coat, target.substrate.capacity);
+                ink::add_coat(target.canvas, slots[i], map.tiles[slots[i]].area, coat, target.capacity(slots[i]));
             if (target.on_palette) pour(target.canvas, slots[i], coat);
         }
     });

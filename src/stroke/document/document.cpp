@@ -19,8 +19,9 @@ Document::Document(const Model& model, const DocumentOptions& options)
       options_(options),
       layers_(model.texels.n_slots()),
       masks_(model),
+      parts_(model),
       materials_(options.substrate, layers_),
-      appearance_(model, materials_, layers_, palette_),
+      appearance_(model, materials_, layers_, palette_, parts_),
       film_(model),
       history_(options.undo_bytes),
       plan_scratch_(std::make_unique<PlanScratchPool>()) {}
@@ -34,13 +35,19 @@ void Document::use(const brush::Preset& preset) {
 
 // Before the hand begins: what it may not do. A replay may, since the lock came after it.
 void Document::check_layer(const JournalEntry& entry) const {
+    if (const PartEdit* edit = entry.as<PartEdit>()) {
+        std::vector<std::string> names;
+        for (const Part& part : edit->parts) names.push_back(part.name);
+        check_part_names(*model_.mesh, names);
+    }
     if (!entry.as<PaintStroke>() && !entry.as<Fill>()) return;
     if (on_palette(entry)) return;
     const std::uint32_t id = layer_of(entry), mask = mask_of(entry);
     const Layer* layer = layers_.table().find(id);
     if (!layer) throw Error(Message("there is no layer {} to paint on", id));
     if (mask && !masks_.table().find(mask)) throw Error(Message("there is no mask {}", mask));
-    if (layer->locked) throw Error(Message("layer '{}' is locked; unlock it or paint on another one", layer->name));
+    if (layer->locked)
+        throw Error(Message("layer '{}' is locked; unlock it or paint on another one", title_of(*layer)));
 }
 
 // A brush that is not held is fresh; the entry says so, for replays that hold it.
@@ -64,7 +71,8 @@ void Document::settle(EntryContent& content) const {
                           },
                           [&](MaskEdit& edit) {
                               if (!edit.remove && edit.mask.id == 0) edit.mask.id = masks_.table().next_id;
-                          }},
+                          },
+                          [](const PartEdit&) {}},
                content);
 }
 
@@ -96,7 +104,8 @@ StrokeReport Document::perform(const JournalEntry& entry, const ProgressFn& prog
                                  [&](const WashPalette&) { return wash(id), done(); },
                                  [&](const Fill& coat) { return fill(id, coat); },
                                  [&](const LayerEdit& edit) { return edit_layers(id, edit), done(); },
-                                 [&](const MaskEdit& edit) { return edit_masks(id, edit), done(); }},
+                                 [&](const MaskEdit& edit) { return edit_masks(id, edit), done(); },
+                                 [&](const PartEdit& edit) { return edit_parts(id, edit), done(); }},
                       entry.content);
 }
 
@@ -143,6 +152,7 @@ void Document::adopt(std::vector<JournalEntry> entries, std::vector<LayerCanvas>
     const auto rest = at == entries.end() ? at : at + 1;
     LayerTable table = layers_after({entries.begin(), rest});
     MaskTable masks = masks_after({entries.begin(), rest});
+    PartTable parts = parts_after({entries.begin(), rest});
     palette_.clear();
     const auto of_palette = std::ranges::find(canvases, kPaletteLayer, &LayerCanvas::layer);
     if (of_palette != canvases.end()) {
@@ -151,6 +161,7 @@ void Document::adopt(std::vector<JournalEntry> entries, std::vector<LayerCanvas>
     }
     layers_.replace(std::move(table), std::move(canvases));
     masks_.set_table(std::move(masks));
+    set_parts(std::move(parts));
     brushes_.clear();
     history_.clear(layers_.pigments().size());
     std::vector<JournalEntry> after(std::make_move_iterator(rest), std::make_move_iterator(entries.end()));
@@ -161,10 +172,11 @@ void Document::adopt(std::vector<JournalEntry> entries, std::vector<LayerCanvas>
 
 namespace {
 
-/// Whether the tables of layers and masks are all that the entry changes: no texel was taken away.
+/// Whether the tables of layers, masks and parts are all that the entry changes: no texel was taken away.
 bool changes_tables_only(const JournalEntry& entry) {
     const LayerEdit* edit = entry.as<LayerEdit>();
-    return entry.as<MaskEdit>() || (edit && edit->what != LayerChange::remove && edit->what != LayerChange::merge);
+    return entry.as<MaskEdit>() || entry.as<PartEdit>() ||
+           (edit && edit->what != LayerChange::remove && edit->what != LayerChange::merge);
 }
 
 }  // namespace
@@ -180,6 +192,7 @@ bool Document::undo() {
     } else if (changes_tables_only(entry)) {
         layers_.set_table(layers_after(journal_.entries()));
         masks_.set_table(masks_after(journal_.entries()));
+        set_parts(parts_after(journal_.entries()));
     } else {
         repaint_all();
     }
@@ -197,6 +210,7 @@ void Document::repaint_all() {
     layers_.clear();
     palette_.clear();
     masks_.set_table({});
+    set_parts({});
     brushes_.clear();
     history_.clear(0);
     forget_pigments();
@@ -212,6 +226,7 @@ void Document::record(UndoRecord record) {
 void Document::take_back(UndoRecord record) {
     restore(record.tiles);
     if (record.masks) masks_.set_table(std::move(*record.masks));
+    if (record.parts) set_parts(std::move(*record.parts));
     if (record.layers) {
         const bool brings_canvas = record.layers->canvas.has_value();
         layers_.restore(std::move(*record.layers));

@@ -14,6 +14,7 @@
 #include "stroke/document/model_film.h"
 #include "stroke/document/paint_target.h"
 #include "stroke/document/palette.h"
+#include "stroke/document/part_set.h"
 #include "stroke/document/undo_history.h"
 #include "stroke/journal/journal.h"
 #include "stroke/session/report.h"
@@ -64,6 +65,9 @@ class Document {
     /// A stroke or fill that names a mask leaves the texels outside it as they are. What it leaves wet does not flow
     /// over the mask's edge: the mask stays on the layer until something is painted there with another mask or none.
     const MaskSet& masks() const { return masks_; }
+    /// Hidden parts are as if they were not there: strokes go through to what lies behind them, and drawings are placed
+    /// on what is seen. Locked parts are touched and get no ink. An eraser takes none from either.
+    const PartSet& parts() const { return parts_; }
     /// Strokes and fills with the layer `kPaletteLayer` go onto it, with wet ink; `WashPalette` cleans it. It is no
     /// part of `layers`.
     const Palette& palette() const { return palette_; }
@@ -141,6 +145,8 @@ class Document {
     FillResult fill_area(const Fill& fill);
     void edit_layers(std::uint64_t id, const LayerEdit& edit);
     void edit_masks(std::uint64_t id, const MaskEdit& edit);
+    void edit_parts(std::uint64_t id, const PartEdit& edit);
+    void set_parts(PartTable table);
 
     /// How entries that are performed in turn enter the journal.
     struct EntrySteps {
@@ -166,6 +172,8 @@ class Document {
     BrushInHand take_up(const PaintStroke& stroke);
     WetFilmInUse wet_film_for(const PaintStroke& stroke, const PaintTarget& target);
 
+    const mesh::SurfaceQuery& surface() const { return *parts_.surface(); }
+    ink::WetFilm& film_within(std::uint32_t mask);
     ink::Canvas& canvas(std::uint32_t layer);
     PaintTarget target(std::uint32_t layer, std::uint32_t mask);
     ink::Mix mix_of(const std::string& ink);
@@ -183,6 +191,7 @@ class Document {
     Journal journal_;
     LayerStack layers_;
     MaskSet masks_;
+    PartSet parts_;
     Palette palette_;
     Materials materials_;
     BrushesInHand brushes_;

@@ -169,12 +169,12 @@ std::vector<Document::BatchStroke> Document::plan_batch(std::span<JournalEntry> 
 void Document::plan_path(BatchStroke& planned) const {
     const PaintStroke& stroke = planned.stroke();
     const double texel = model_.texels.texel_size;
-    planned.path = stroke.trace.flat ? hand_path(*model_.query, steady(stroke.trace, stroke.settings), planned.holder)
+    planned.path = stroke.trace.flat ? hand_path(surface(), steady(stroke.trace, stroke.settings), planned.holder)
                                      : HandPath{{}, spatial_poses(stroke.trace), 0};
     const std::vector<brush::Pose>& poses = planned.path.poses;
     planned.parts =
         parts_of_path(poses, std::max(kLeastPart * planned.spacing, 0.5 * brush::tuft_width(*planned.preset)));
-    planned.tiles = tile_reach_->tiles_at(reached_places(*model_.query, poses, planned.parts, *planned.preset, texel));
+    planned.tiles = tile_reach_->tiles_at(reached_places(surface(), poses, planned.parts, *planned.preset, texel));
 }
 
 void Document::paint_step(BatchStroke& stroke, std::size_t step, const ProgressFn& progress) const {
@@ -193,7 +193,7 @@ void Document::paint_step(BatchStroke& stroke, std::size_t step, const ProgressF
     if (part < stroke.parts.size())
         return paint_poses(session, poses, part ? stroke.parts[part - 1] : 0, stroke.parts[part]);
     stroke.result = session.finish();
-    note_origin(stroke.result->report, stroke.stroke(), model_);
+    note_origin(stroke.result->report, stroke.stroke(), surface());
 }
 
 void Document::paint_batch(std::vector<BatchStroke>& batch, const ProgressFn& progress) {

@@ -62,12 +62,18 @@ ink::Canvas& Document::canvas(std::uint32_t layer) {
 PaintTarget Document::target(std::uint32_t layer, std::uint32_t mask) {
     if (layer == kPaletteLayer) {
         Palette::Plate& plate = palette_.plate();
-        return {.model = plate.model, .substrate = plate.substrate, .canvas = canvas(layer), .on_palette = true};
+        return {.model = plate.model,
+                .surface = *plate.model.query,
+                .substrate = plate.substrate,
+                .canvas = canvas(layer),
+                .on_palette = true};
     }
     return {.model = model_,
+            .surface = surface(),
             .substrate = materials_.substrate(),
             .canvas = canvas(layer),
-            .mask = mask ? &masks_.texels(mask) : nullptr};
+            .mask = parts_.open_texels(mask, masks_),
+            .substrates = parts_.substrates()};
 }
 
 // A pigment that is new to the document comes with the colour it was painted with.
@@ -118,7 +124,7 @@ void Document::dry(std::uint64_t id, const Dry& wait, const ProgressFn& progress
             before.tiles.push_back(canvas.snapshot(slot));
         };
         try {
-            ink::WetFilm& film = film_.within(stencil_mask_on(layer.id, id), masks_);
+            ink::WetFilm& film = film_within(stencil_mask_on(layer.id, id));
             if (wait.seconds > 0)
                 film.advance(canvas, wait.seconds, params, copy, progress);
             else
@@ -149,7 +155,8 @@ FillResult Document::fill_area(const Fill& fill) {
         films.push_back(stop.film >= 0 ? stop.film : stop.opacity * materials_.ink(stop.ink).film);
     }
     const FlatFrame frame{area.placement, area.low, area.high, area.edges};
-    if (!flat_texels_ || flat_texels_->frame() != frame) flat_texels_ = std::make_unique<FlatTexels>(model_, frame);
+    if (!flat_texels_ || flat_texels_->frame() != frame)
+        flat_texels_ = std::make_unique<FlatTexels>(model_, surface(), frame);
     return apply_area(fill, target(fill.layer, fill.mask), *flat_texels_, mixes, films);
 }
 
@@ -175,7 +182,37 @@ void Document::edit_layers(std::uint64_t id, const LayerEdit& edit) {
 
 void Document::edit_masks(std::uint64_t id, const MaskEdit& edit) {
     film_.release(edit.mask.id);
+    parts_.release_mask(edit.mask.id);
     record({.entry = id, .masks = masks_.edit(edit)});
+}
+
+void Document::edit_parts(std::uint64_t id, const PartEdit& edit) {
+    PartTable before = parts_.table(), after = before;
+    apply(after, edit);
+    set_parts(std::move(after));
+    record({.entry = id, .parts = std::move(before)});
+}
+
+// What was made for the parts as they were: the film's stencil, areas mapped to the surface, the colours of the texels.
+void Document::set_parts(PartTable table) {
+    if (table == parts_.table()) return;
+    film_.release();
+    flat_texels_.reset();
+    const bool same = have_same_substrates(table, parts_.table());
+    std::vector<std::uint32_t> slots;
+    const auto add_slots = [&] {
+        const ink::SubstrateMap* map = same ? nullptr : parts_.substrates();
+        for (std::uint32_t slot = 0; map && slot < map->of_slot.size(); ++slot)
+            if (map->differs(slot)) slots.push_back(slot);
+    };
+    add_slots();
+    parts_.set_table(std::move(table));
+    add_slots();
+    layers_.mark_changed(slots);
+}
+
+ink::WetFilm& Document::film_within(std::uint32_t mask) {
+    return film_.within(mask, parts_.open_texels(mask, masks_));
 }
 
 }  // namespace tuft::stroke

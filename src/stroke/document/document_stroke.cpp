@@ -41,8 +41,8 @@ void paint_poses(StrokeSession& session, std::span<const brush::Pose> poses, std
     for (std::size_t i = from; i < to; ++i) session.advance(poses.subspan(i, 1), static_cast<double>(i + 1) / all);
 }
 
-void note_origin(StrokeReport& report, const PaintStroke& stroke, const Model& model) {
-    if (stroke.trace.flat) report.inside.origin = contact::depth_inside(*model.query, stroke.trace.placement.origin);
+void note_origin(StrokeReport& report, const PaintStroke& stroke, const mesh::SurfaceQuery& surface) {
+    if (stroke.trace.flat) report.inside.origin = contact::depth_inside(surface, stroke.trace.placement.origin);
 }
 
 void Document::check_size(const JournalEntry& entry) {
@@ -105,7 +105,7 @@ BrushInHand Document::take_up(const PaintStroke& stroke) {
 WetFilmInUse Document::wet_film_for(const PaintStroke& stroke, const PaintTarget& target) {
     if (stroke.settings.film != FilmModel::wet || stroke.erases()) return {};
     if (target.on_palette) return {palette_.plate().film.get(), palette_.plate().params};
-    return {&film_.within(stroke.mask, masks_), ink::film_params(target.substrate, stroke.settings.down)};
+    return {&film_within(stroke.mask), ink::film_params(target.substrate, stroke.settings.down)};
 }
 
 // `plan`: tiles that it may use; null: all, and with them the links over the seams.
@@ -124,9 +124,11 @@ std::unique_ptr<StrokeSession> Document::make_session(PaintStroke stroke, const 
                                                         .brush = std::move(brush),
                                                         .ink = ink,
                                                         .model = target.model,
+                                                        .surface = target.surface,
                                                         .substrate = target.substrate,
                                                         .canvas = target.canvas,
                                                         .mask = target.mask,
+                                                        .substrates = target.substrates,
                                                         .plan = plan,
                                                         .wet = std::move(wet),
                                                         .scratch = *plan_scratch_,
@@ -155,8 +157,7 @@ StrokeReport Document::put_down(std::uint64_t id, const PaintStroke& stroke, Ses
 HandPath Document::path_of(const PaintStroke& stroke) {
     if (stroke.trace.samples.empty()) throw Error("a stroke without samples cannot be painted");
     if (!stroke.trace.flat) return {{}, spatial_poses(stroke.trace), 0};
-    const Model& model = stroke.layer == kPaletteLayer ? palette_.model() : model_;
-    const mesh::SurfaceQuery& query = *model.query;
+    const mesh::SurfaceQuery& query = stroke.layer == kPaletteLayer ? *palette_.model().query : surface();
     return hand_path(query, steady(stroke.trace, stroke.settings),
                      materials_.holder(stroke.brush, query.mesh(), stroke.settings.compensate_tip_lag));
 }
@@ -168,8 +169,7 @@ std::unique_ptr<PathAhead> Document::plan_path_ahead(const JournalEntry& entry) 
         return nullptr;
     try {
         return std::make_unique<PathAhead>(
-            *stroke, materials_.holder(stroke->brush, *model_.mesh, stroke->settings.compensate_tip_lag),
-            *model_.query);
+            *stroke, materials_.holder(stroke->brush, *model_.mesh, stroke->settings.compensate_tip_lag), surface());
     } catch (const Error&) {
         return nullptr;  // it is reported when its turn comes
     }
@@ -194,7 +194,7 @@ StrokeReport Document::draw(std::uint64_t id, const PaintStroke& stroke, const H
             watcher_(*session_, static_cast<double>(i + 1) / static_cast<double>(n));
         }
         StrokeReport report = finish_session(id);
-        note_origin(report, stroke, target(stroke.layer, 0).model);
+        note_origin(report, stroke, target(stroke.layer, 0).surface);
         return report;
     } catch (...) {
         cancel();

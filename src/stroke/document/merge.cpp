@@ -49,13 +49,13 @@ class Follower {
 
     void append(JournalEntry entry) {
         const JournalEntry was = entry;
-        const bool is_possible =
-            std::visit(Overloaded{[&](PaintStroke& stroke) { return map_target(stroke); },
-                                  [](const BrushAction&) { return true; }, [](const Dry&) { return true; },
-                                  [](const WashPalette&) { return true; }, [&](Fill& fill) { return map_target(fill); },
-                                  [&](LayerEdit& edit) { return map_layer_edit(edit); },
-                                  [&](MaskEdit& edit) { return map_mask_edit(edit); }},
-                       entry.content);
+        const bool is_possible = std::visit(
+            Overloaded{[&](PaintStroke& stroke) { return map_target(stroke); }, [](const BrushAction&) { return true; },
+                       [](const Dry&) { return true; }, [](const WashPalette&) { return true; },
+                       [&](Fill& fill) { return map_target(fill); },
+                       [&](LayerEdit& edit) { return map_layer_edit(edit); },
+                       [&](MaskEdit& edit) { return map_mask_edit(edit); }, [](const PartEdit&) { return true; }},
+            entry.content);
         if (is_possible) put(std::move(entry));
         learn(was);
     }

@@ -11,21 +11,23 @@ const atlas::SeamLinks& ModelFilm::seams() {
     return *seams_;
 }
 
-ink::WetFilm& ModelFilm::within(std::uint32_t id, const MaskSet& masks) {
+ink::WetFilm& ModelFilm::within(std::uint32_t id, const MaskTexels* texels) {
     if (!film_) film_ = std::make_unique<ink::WetFilm>(model_->texels, seams());
     if (id == mask_) return *film_;
     ink::WetFilm::FreeFn free;
-    if (id)
-        free = [texels = &masks.texels(id)](std::uint32_t slot, int texel) { return texels->coverage(slot, texel); };
+    if (texels) free = [texels](std::uint32_t slot, int texel) { return texels->coverage(slot, texel); };
     film_->keep_within(std::move(free));
     mask_ = id;
     return *film_;
 }
 
 void ModelFilm::release(std::uint32_t id) {
-    if (!film_ || id == 0 || id != mask_) return;
-    film_->keep_within({});
-    mask_ = 0;
+    if (id == mask_) release();
+}
+
+void ModelFilm::release() {
+    if (film_ && mask_) film_->keep_within({});
+    mask_.reset();
 }
 
 }  // namespace tuft::stroke

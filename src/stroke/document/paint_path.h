@@ -14,6 +14,6 @@ void begin_path(StrokeSession& session, const HandPath& path, const ProgressFn& 
 void paint_poses(StrokeSession& session, std::span<const brush::Pose> poses, std::size_t from, std::size_t to);
 
 /// Fills in how deep within the model a flat stroke was placed.
-void note_origin(StrokeReport& report, const PaintStroke& stroke, const Model& model);
+void note_origin(StrokeReport& report, const PaintStroke& stroke, const mesh::SurfaceQuery& surface);
 
 }  // namespace tuft::stroke

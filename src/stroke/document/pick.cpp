@@ -7,8 +7,9 @@
 namespace tuft::stroke {
 namespace {
 
-Pick pick_at(const Vec3& point, const Model& model, std::span<const LayerTexels> layers) {
-    const auto at = model.query->closest_point(point);
+Pick pick_at(const Vec3& point, const Model& model, const mesh::SurfaceQuery& surface,
+             std::span<const LayerTexels> layers) {
+    const auto at = surface.closest_point(point);
     if (!at) throw Error("there is no surface to look at");
     Pick pick;
     pick.at = *at;
@@ -38,13 +39,13 @@ Pick pick_at(const Vec3& point, const Model& model, std::span<const LayerTexels>
 }  // namespace
 
 Pick pick(const Document& document, const Vec3& point) {
-    return pick_at(point, document.model(), document.appearance().shown_layers());
+    return pick_at(point, document.model(), *document.parts().surface(), document.appearance().shown_layers());
 }
 
 Pick pick_on_palette(const Document& document, const Vec3& point) {
     const Model& model = document.palette().model();
     const LayerTexels texels{kPaletteLayer, document.palette().canvas()};
-    return pick_at(point, model, std::span(&texels, 1));
+    return pick_at(point, model, *model.query, std::span(&texels, 1));
 }
 
 std::optional<ink::Ink> picked_ink(const Pick& pick, std::span<const ink::Pigment> pigments, const std::string& name) {

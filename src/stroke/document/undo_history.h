@@ -8,6 +8,7 @@
 #include "stroke/document/brushes_in_hand.h"
 #include "stroke/document/layer_stack.h"
 #include "stroke/journal/mask.h"
+#include "stroke/journal/parts.h"
 
 /// \file
 /// What the last entries of a journal changed, as it was before, so that `Document::undo` need not paint anew.
@@ -19,6 +20,7 @@ struct UndoRecord {
     std::vector<LayerTiles> tiles;      ///< of layers, or of the palette
     std::optional<LayerBackup> layers;  ///< of a `LayerEdit`
     std::optional<MaskTable> masks;     ///< of a `MaskEdit`
+    std::optional<PartTable> parts;     ///< of a `PartEdit`
     std::optional<BrushBackup> brush;   ///< of an entry with a brush in it
 };
 

@@ -47,6 +47,7 @@ bool is_copied(const JournalEntry& entry) {
     switch (kind_of(entry)) {
         case EntryKind::layer:
         case EntryKind::mask:
+        case EntryKind::part:
         case EntryKind::wash:
             return false;
         case EntryKind::fill:

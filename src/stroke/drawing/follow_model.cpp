@@ -185,7 +185,7 @@ std::vector<JournalEntry> follow_model(std::vector<JournalEntry> entries, const 
                               [&](MaskEdit& m) {
                                   if (!m.remove) move_mask(m.mask, groups.whole());
                               },
-                              [](Dry&) {}, [](WashPalette&) {}, [](LayerEdit&) {}},
+                              [](Dry&) {}, [](WashPalette&) {}, [](LayerEdit&) {}, [](PartEdit&) {}},
                    entry.content);
     }
     return entries;

@@ -13,8 +13,8 @@ namespace tuft::stroke {
 namespace {
 
 constexpr double kLongestWait = 86400;  // seconds
-constexpr const char* kEntryKinds[] = {"stroke", "dip",  "rinse", "reshape", "dry",
-                                       "layer",  "mask", "fill",  "wipe",    "wash"};
+constexpr const char* kEntryKinds[] = {"stroke", "dip",  "rinse", "reshape", "dry", "layer",
+                                       "mask",   "fill", "wipe",  "wash",    "part"};
 const std::string kNoName;
 const StrokeSamples kNoSamples{.flat = false};
 
@@ -28,7 +28,7 @@ auto* brush_in(Entry& entry) {
 { return &named.brush; }
 , [](const Dry&) -> Name { return nullptr; }, [](const WashPalette&) -> Name { return nullptr; },
     [](const Fill&) -> Name { return nullptr; }, [](const LayerEdit&) -> Name { return nullptr; },
-    [](const MaskEdit&) -> Name { return nullptr; }
+    [](const MaskEdit&) -> Name { return nullptr; }, [](const PartEdit&) -> Name { return nullptr; }
 }  // namespace
 ,
                       entry.content);
@@ -42,7 +42,8 @@ auto* ink_in(Entry& entry) {
 }
 { return &named.ink; }
 , [](const Dry&) -> Name { return nullptr; }, [](const WashPalette&) -> Name { return nullptr; },
-    [](const LayerEdit&) -> Name { return nullptr; }, [](const MaskEdit&) -> Name { return nullptr; }
+    [](const LayerEdit&) -> Name { return nullptr; }, [](const MaskEdit&) -> Name { return nullptr; },
+    [](const PartEdit&) -> Name { return nullptr; }
 },
                       entry.content);
 }
@@ -55,7 +56,7 @@ EntryKind kind_of(const EntryContent& content) {
                    [](const BrushAction& action) { return entry_kind_of(action.kind); },
                    [](const Dry&) { return EntryKind::dry; }, [](const WashPalette&) { return EntryKind::wash; },
                    [](const Fill&) { return EntryKind::fill; }, [](const LayerEdit&) { return EntryKind::layer; },
-                   [](const MaskEdit&) { return EntryKind::mask; }},
+                   [](const MaskEdit&) { return EntryKind::mask; }, [](const PartEdit&) { return EntryKind::part; }},
         content);
 }
 
@@ -66,9 +67,10 @@ std::string name_of(EntryKind kind) {
 EntryKind entry_kind_of(const std::string& name) {
     const auto at = std::find(std::begin(kEntryKinds), std::end(kEntryKinds), name);
     if (at != std::end(kEntryKinds)) return static_cast<EntryKind>(at - std::begin(kEntryKinds));
-    throw Error(Message(
-        "'{}' is no action of a brush; there are stroke, dip, rinse, reshape, dry, layer, mask, fill, wipe and wash",
-        excerpt(name)));
+    throw Error(
+        Message("'{}' is no action of a brush; there are stroke, dip, rinse, reshape, dry, layer, mask, fill, wipe, "
+                "wash and part",
+                excerpt(name)));
 }
 
 EntryKind entry_kind_of(BrushActionKind kind) {
@@ -98,7 +100,7 @@ bool has_brush(EntryKind kind) {
 }
 
 bool keeps_texels(EntryKind kind) {
-    return kind == EntryKind::layer || kind == EntryKind::mask;
+    return kind == EntryKind::layer || kind == EntryKind::mask || kind == EntryKind::part;
 }
 
 const std::string& brush_of(const JournalEntry& entry) {

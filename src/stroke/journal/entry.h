@@ -12,6 +12,7 @@
 #include "stroke/journal/fill.h"
 #include "stroke/journal/layers.h"
 #include "stroke/journal/mask.h"
+#include "stroke/journal/parts.h"
 #include "stroke/journal/samples.h"
 #include "stroke/journal/settings.h"
 
@@ -79,7 +80,7 @@ struct Dry {
 /// Removes all ink from the palette.
 struct WashPalette {};
 
-using EntryContent = std::variant<PaintStroke, BrushAction, Dry, WashPalette, Fill, LayerEdit, MaskEdit>;
+using EntryContent = std::variant<PaintStroke, BrushAction, Dry, WashPalette, Fill, LayerEdit, MaskEdit, PartEdit>;
 
 template <class T, class Variant>
 inline constexpr bool kIsAlternative = false;
@@ -130,7 +131,7 @@ struct JournalEntry {
 };
 
 /// Kind of an entry as files, lists and the command line name it.
-enum class EntryKind { stroke, dip, rinse, reshape, dry, layer, mask, fill, wipe, wash };
+enum class EntryKind { stroke, dip, rinse, reshape, dry, layer, mask, fill, wipe, wash, part };
 
 EntryKind kind_of(const EntryContent& content);
 inline EntryKind kind_of(const JournalEntry& entry) {

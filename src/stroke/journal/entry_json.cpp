@@ -181,6 +181,8 @@ EntryContent content_of(EntryColumns& columns, EntryKind kind, const json& j) {
             return layer_edit_of(j.value("edit", json::object()));
         case EntryKind::mask:
             return mask_edit_of(j.value("mask_edit", json::object()));
+        case EntryKind::part:
+            return part_edit_of(j.value("part_edit", json::object()));
     }
     throw Error("an entry of the journal is of no kind");
 }
@@ -198,7 +200,8 @@ std::string entry_json(const JournalEntry& entry) {
                                        return out;
                                    },
                                    [](const LayerEdit& edit) { return with_settings("edit", json_of(edit)); },
-                                   [](const MaskEdit& edit) { return with_settings("mask_edit", json_of(edit)); }},
+                                   [](const MaskEdit& edit) { return with_settings("mask_edit", json_of(edit)); },
+                                   [](const PartEdit& edit) { return with_settings("part_edit", json_of(edit)); }},
                         entry.content);
     if (const EntryKind kind = kind_of(entry); kind != EntryKind::stroke) j["action"] = name_of(kind);
     if (entry.group.id != 0) {

@@ -44,4 +44,7 @@ Fill fill_of(const nlohmann::json& json);
 nlohmann::json json_of(const MaskEdit& edit);
 MaskEdit mask_edit_of(const nlohmann::json& json);
 
+nlohmann::json json_of(const PartEdit& edit);
+PartEdit part_edit_of(const nlohmann::json& json);
+
 }  // namespace tuft::stroke

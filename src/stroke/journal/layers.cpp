@@ -22,10 +22,34 @@ void check_layer(const LayerTable& table, const Layer& layer) {
     check_name(layer.name, "layer");
     if (!(layer.opacity >= 0 && layer.opacity <= 1)) throw Error("the opacity of a layer is 0 to 1");
     const Layer* same = table.find(layer.name);
-    if (same && same->id != layer.id) throw Error(Message("there is a layer '{}' already", layer.name));
+    if (same && same->id != layer.id) throw Error(Message("there is a layer '{}' already", title_of(layer)));
 }
 
 }  // namespace
+
+namespace {
+
+bool is_number(std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == text.npos;
+}
+
+Message message_of(const std::string& name) {
+    constexpr std::string_view kCopy = " copy", kLayer = "Layer ";
+    if (const std::size_t at = name.rfind(kCopy); at != std::string::npos && at > 0) {
+        const std::string number = name.substr(at + kCopy.size());
+        if (number.empty() || (number[0] == ' ' && is_number(std::string_view(number).substr(1))))
+            return {"{} copy{}", message_of(name.substr(0, at)), number};
+    }
+    if (name.starts_with(kLayer) && is_number(std::string_view(name).substr(kLayer.size())))
+        return {"Layer {}", name.substr(kLayer.size())};
+    return name;
+}
+
+}  // namespace
+
+Message title_of(const Layer& layer) {
+    return message_of(layer.name);
+}
 
 void check_name(std::string_view name, const char* of_what) {
     const Message what("the name of a {}", of_what);
@@ -118,13 +142,13 @@ LayerEdit duplicated(const LayerTable& table, std::uint32_t id, const std::strin
 LayerEdit merged_down(const LayerTable& table, std::uint32_t id) {
     const Layer& upper = *place_of(table, id);
     if (&upper == table.layers.data())
-        throw Error(Message("layer '{}' is the lowest: there is none to merge it into", upper.name));
+        throw Error(Message("layer '{}' is the lowest: there is none to merge it into", title_of(upper)));
     const Layer& lower = *(&upper - 1);
     for (const Layer* layer : {&upper, &lower}) {
         if (!layer->visible)
-            throw Error(Message("layer '{}' is hidden; show it before layers are merged", layer->name));
+            throw Error(Message("layer '{}' is hidden; show it before layers are merged", title_of(*layer)));
         if (layer->locked)
-            throw Error(Message("layer '{}' is locked; unlock it before layers are merged", layer->name));
+            throw Error(Message("layer '{}' is locked; unlock it before layers are merged", title_of(*layer)));
         if (layer->opacity < 1)
             throw Error(Message(
                 "layer '{}' is faded, which one layer of ink cannot show; give it opacity 1 before layers are merged",

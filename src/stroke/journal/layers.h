@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/geometry/types.h"
+#include "core/message.h"
 #include "ink/canvas/canvas.h"
 #include "ink/composite/blend.h"
 
@@ -61,6 +62,10 @@ struct LayerEdit {
 
     bool operator==(const LayerEdit&) const = default;
 };
+
+/// Returns a layer's name for a message. Names that the document and the studio give, "Layer N" and "NAME copy N", are
+/// words, which are translated; others are as the person wrote them. Its English is the name.
+Message title_of(const Layer& layer);
 
 /// Carries the edit out. Throws `Error` and changes nothing for an unknown layer, a name that is empty or taken, the
 /// removal of the last layer, and numbers out of range.

@@ -45,6 +45,7 @@ class Recorder {
         apply(masks_, edit);
         ++out_.left_out;
     }
+    void operator()(const PartEdit&) { ++out_.left_out; }
 
   private:
     RecordedStroke& begin(const StrokeSettings& settings) {

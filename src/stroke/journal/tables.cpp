@@ -43,6 +43,13 @@ MaskTable masks_after(std::span<const JournalEntry> entries) {
     return table;
 }
 
+PartTable parts_after(std::span<const JournalEntry> entries) {
+    PartTable table;
+    for (const JournalEntry& entry : entries)
+        if (const PartEdit* edit = entry.as<PartEdit>(); edit && !entry.hidden) apply(table, *edit);
+    return table;
+}
+
 std::uint32_t last_mask_on(std::span<const JournalEntry> entries, std::uint32_t layer) {
     std::map<std::uint32_t, std::uint32_t> masks;  // by layer
     for (const JournalEntry& entry : entries) {

@@ -16,11 +16,14 @@ LayerTable layers_after(std::span<const JournalEntry> entries);
 /// Returns the table of masks likewise.
 MaskTable masks_after(std::span<const JournalEntry> entries);
 
+/// Returns the table of parts likewise.
+PartTable parts_after(std::span<const JournalEntry> entries);
+
 /// Returns the id of the mask through which these entries last painted on a layer; 0: none.
 std::uint32_t last_mask_on(std::span<const JournalEntry> entries, std::uint32_t layer);
 
-/// Whether only edits of layers and masks come after entry `id`, so that `Document::adopt` can take texels stored after
-/// it.
+/// Whether only edits of layers, masks and parts come after entry `id`, so that `Document::adopt` can take texels
+/// stored after it.
 bool fits(std::span<const JournalEntry> entries, std::uint64_t id);
 
 /// Sets the layer of each stroke and fill to the one that its `names` give, else to the one called `name`; empty: to

@@ -47,8 +47,13 @@ StrokeSession::StrokeSession(SessionInput input)
       tuft_{.brush = std::move(input_.brush), .ink = input_.ink, .state = {}},
       path_(path_options()),
       hair_(hair_options(input_, holds_mixed_ink())),
-      stencil_(*input_.model.query, input_.stroke.trace),
-      target_(input_.model, input_.canvas, input_.substrate, input_.mask, input_.plan, input_.scratch),
+      stencil_(input_.surface, input_.stroke.trace),
+      target_(input_.model, input_.canvas, input_.substrate,
+              {.mask = input_.mask,
+               .plan = input_.plan,
+               .substrates = input_.substrates,
+               .standing = static_cast<float>(ink::standing_film(input_.ink.yield))},
+              input_.scratch),
       deposit_(make_deposit()) {
     contact_.options.method = input_.stroke.settings.contact;
     report_.nearest = std::numeric_limits<double>::infinity();
@@ -140,7 +145,7 @@ contact::Result StrokeSession::next_contact(const brush::Pose& pose, double dt) 
     // Hair that painted before comes through the air, as it sprang back.
     if (!path_.started && tuft_.brush.tuft.posed) brush::step(tuft_.brush.tuft, pose, {}, 0);
     contact::Result contact =
-        contact::step(tuft_.brush.tuft, pose, *input_.model.query, contact_.memory, dt, contact_.options);
+        contact::step(tuft_.brush.tuft, pose, input_.surface, contact_.memory, dt, contact_.options);
     contact_.hair = touches(contact) ? find_hair(tuft_.brush.tuft, contact, contact_.last) : HairShape{};
     contact_.last.store(tuft_.brush.tuft, pose, contact_.hair, contact);
     return contact;
@@ -303,7 +308,7 @@ std::unique_ptr<StrokeForecast> StrokeSession::forecast(std::span<const brush::P
     Path path(path_options());
     for (const brush::Pose& pose : poses) path.resampler.push(next_pose(path, pose), path.poses);
     path.resampler.finish(path.poses);
-    return std::make_unique<StrokeForecast>(tuft_.brush.tuft, std::move(path.poses), *input_.model.query,
+    return std::make_unique<StrokeForecast>(tuft_.brush.tuft, std::move(path.poses), input_.surface,
                                             StrokeForecast::Options{contact_.options, hair_.options().closed});
 }
 

@@ -25,11 +25,13 @@ struct SessionInput {
     BrushInHand brush;   ///< as the stroke begins
     ink::Ink ink;        ///< dipped into
     const Model& model;
+    const mesh::SurfaceQuery& surface;  ///< that the brush touches
     const ink::Substrate& substrate;
-    ink::Canvas& canvas;               ///< of the stroke's layer
-    const MaskTexels* mask = nullptr;  ///< texels that may change; null: all
-    const TilePlan* plan = nullptr;    ///< tiles that may be used, or the session throws `OutsideTiles`; null: all
-    WetFilmInUse wet;                  ///< for strokes with wet ink
+    ink::Canvas& canvas;                            ///< of the stroke's layer
+    const MaskTexels* mask = nullptr;               ///< texels that may change; null: all
+    const ink::SubstrateMap* substrates = nullptr;  ///< of the model's parts; null: `substrate` everywhere
+    const TilePlan* plan = nullptr;  ///< tiles that may be used, or the session throws `OutsideTiles`; null: all
+    WetFilmInUse wet;                ///< for strokes with wet ink
     PlanScratchPool& scratch;
     SeamLinksFn seams;           ///< of the model; called at most once, at the end
     bool record_forces = false;  ///< fills `StrokeReport::forces`

@@ -6,11 +6,11 @@
 
 namespace tuft::stroke {
 
-std::vector<std::uint8_t> charts_of(const Fill& fill, const Model& model) {
+std::vector<std::uint8_t> charts_of(const Fill& fill, const Model& model, const mesh::SurfaceQuery& surface) {
     const std::vector<std::uint32_t>& chart = model.atlas.triangle_chart;
     std::vector<std::uint8_t> filled(model.atlas.n_charts, fill.region == Region::all);
     if (fill.region == Region::all) return filled;
-    const auto at = model.query->closest_point(fill.at);
+    const auto at = surface.closest_point(fill.at);
     if (!at) throw Error("there is no surface to fill");
     filled[chart[at->triangle]] = 1;
     if (fill.region == Region::chart) return filled;

@@ -11,7 +11,7 @@
 
 namespace tuft::stroke {
 
-/// Returns for each chart of the atlas whether it is filled, 0 or 1. [n_charts]
-std::vector<std::uint8_t> charts_of(const Fill& fill, const Model& model);
+/// Returns for each chart of the atlas whether it is filled, 0 or 1. [n_charts] `surface`: of the visible parts.
+std::vector<std::uint8_t> charts_of(const Fill& fill, const Model& model, const mesh::SurfaceQuery& surface);
 
 }  // namespace tuft::stroke

@@ -24,7 +24,7 @@ constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
 /// The drawing's rectangle on the surface, as nodes of a grid.
 class SurfaceGrid {
   public:
-    SurfaceGrid(const Model& model, const FlatFrame& frame) {
+    SurfaceGrid(const mesh::SurfaceQuery& surface, const FlatFrame& frame) {
         const Vec2 low = frame.low, high = frame.high;
         const Vec2 size = glm::max(high - low, Vec2(1e-6));
         for (int k = 0; k < 2; ++k)
@@ -36,7 +36,7 @@ class SurfaceGrid {
         StrokeSamples nodes{.placement = frame.placement};
         for (int j = 0; j < n_[1]; ++j)
             for (int i = 0; i < n_[0]; ++i) nodes.samples.push_back({.position = Vec3(low_ + step_ * Vec2(i, j), 0)});
-        nodes_ = map_to_surface(*model.query, nodes).samples;
+        nodes_ = map_to_surface(surface, nodes).samples;
         if (frame.edges == AreaEdges::cut) keep_connected();
         build_mesh();
     }
@@ -265,15 +265,15 @@ bool reaches(const SurfaceGrid& grid, const atlas::TexelShape& shape, const atla
 
 }  // namespace
 
-FlatTexels::FlatTexels(const Model& model, const FlatFrame& frame) : frame_(frame) {
+FlatTexels::FlatTexels(const Model& model, const mesh::SurfaceQuery& surface, const FlatFrame& frame) : frame_(frame) {
     if (frame.placement.mapping == SurfaceMapping::project)
-        project(model);
+        project(model, surface);
     else
-        unfold(model);
+        unfold(model, surface);
 }
 
-void FlatTexels::unfold(const Model& model) {
-    const SurfaceGrid grid(model, frame_);
+void FlatTexels::unfold(const Model& model, const mesh::SurfaceQuery& surface) {
+    const SurfaceGrid grid(surface, frame_);
     if (grid.empty()) return;
     tiles_ = gather_tiles(model, [&](const atlas::TexelShape& shape, const atlas::TexelTile& in, Tile& out) {
         if (!reaches(grid, shape, in)) return false;
@@ -289,7 +289,7 @@ void FlatTexels::unfold(const Model& model) {
     });
 }
 
-void FlatTexels::project(const Model& model) {
+void FlatTexels::project(const Model& model, const mesh::SurfaceQuery& surface) {
     const Placement& placement = frame_.placement;
     const Vec2 low = frame_.low, high = frame_.high;
     const AreaEdges edges = frame_.edges;
@@ -297,7 +297,7 @@ void FlatTexels::project(const Model& model) {
     const Axes axes = axes_across(outward, placement.right, placement.down);
     const double facing = edges == AreaEdges::run_over ? kWall : kFacing;
     std::optional<SurfaceGrid> grid;
-    if (edges == AreaEdges::cut) grid.emplace(model, frame_);
+    if (edges == AreaEdges::cut) grid.emplace(surface, frame_);
     if (grid && grid->empty()) return;
     // With right and down of the other hand the reader is on the other side.
     const double texel = model.texels.texel_size, far = 4 * model.mesh->bounds.diagonal();
@@ -312,7 +312,7 @@ void FlatTexels::project(const Model& model) {
             if (glm::any(glm::lessThan(flat, low - margin)) || glm::any(glm::greaterThan(flat, high + margin)))
                 continue;
             if (grid && !grid->query().closest_point(p, grid->cut_height() + texel)) continue;
-            if (glm::dot(n, outward) <= facing || model.query->occluded(p + 2 * texel * n, outward, 0, far)) continue;
+            if (glm::dot(n, outward) <= facing || surface.occluded(p + 2 * texel * n, outward, 0, far)) continue;
             out.at[t] = Vec2f(flat);
         }
         return true;

@@ -44,15 +44,16 @@ class FlatTexels {
         std::array<Vec2f, atlas::kTileTexels> at;  ///< metres; NaN: not reached
     };
 
-    FlatTexels(const Model& model, const FlatFrame& frame);
+    /// `surface`: of the visible parts of the model.
+    FlatTexels(const Model& model, const mesh::SurfaceQuery& surface, const FlatFrame& frame);
 
     /// Tiles with at least one texel that is reached, by ascending slot.
     std::span<const Tile> tiles() const { return tiles_; }
     const FlatFrame& frame() const { return frame_; }
 
   private:
-    void project(const Model& model);
-    void unfold(const Model& model);
+    void project(const Model& model, const mesh::SurfaceQuery& surface);
+    void unfold(const Model& model, const mesh::SurfaceQuery& surface);
 
     FlatFrame frame_;
     std::vector<Tile> tiles_;

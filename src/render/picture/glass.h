@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/picture/picture.h"
+
+/// \file
+/// Product pictures of models with parts of glass. Called by `tuft` and by the studio's export.
+namespace tuft::render {
+
+/// What lets light pass. The span must outlive the call.
+struct Glass {
+    std::vector<std::uint8_t> triangles;              ///< [n_triangles] 1: of glass; empty: none
+    std::vector<std::uint8_t> hidden = {};            ///< [n_triangles] 1: not in the picture; empty: none
+    std::uint32_t size = 0;                           ///< texels per side of the map, row 0 at v = 0
+    std::span<const std::uint8_t> transmission = {};  ///< [size²] part of the light that passes, × 255
+};
+
+/// Draws the model as `render_picture` does, and what is behind glass through it. With τ the transmission of the point
+/// that a ray meets first, F(θ) its Fresnel reflectance (Schlick 1994, F0 = 0.04) and c its colour as an opaque
+/// surface,
+///
+///     seen = (1 − t) opaque + t c behind,    t = τ (1 − F(θ)),
+///
+/// in linear light, for up to two walls of glass on a ray: one that faces the eye, then any. Light is not refracted and
+/// glass casts no shadow on what is behind it. 4 × 4 rays per pixel decide where glass is. Cost: that of three
+/// pictures.
+Image render_with_glass(const mesh::TriangleMesh& mesh, const mesh::SurfaceQuery& query, const Appearance& appearance,
+                        const Glass& glass, const PictureOptions& options = {});
+
+}  // namespace tuft::render
