@@ -40,7 +40,7 @@ namespace {
 
 /// By so much turned about the hair the last direction decides which way a section goes on: a hand that moves exactly
 /// along its holder's x or y would leave the choice to rounding.
-constexpr double kAside = -0.02;
+constexpr double kAside = 0.02;
 
 struct Wide {
     std::size_t node = 0;
