@@ -38,6 +38,10 @@ std::vector<Vec3> broad_axes(const rod::Memory& m, std::span<const Vec3> t) {
 
 namespace {
 
+/// By so much turned about the hair the last direction decides which way a section goes on: a hand that moves exactly
+/// along its holder's x or y would leave the choice to rounding.
+constexpr double kAside = 0.02;
+
 struct Wide {
     std::size_t node = 0;
     Vec3 direction{1, 0, 0};
@@ -71,10 +75,11 @@ Wide wide_axis(const SectionInput& in, const std::vector<Vec3>& t) {
     }
     Vec3& e = best.direction;
     e -= glm::dot(e, t[best.node]) * t[best.node];
-    if (glm::length(e) < 1e-9) e = glm::cross(t[best.node], Vec3{0.36, 0.48, 0.8});
+    if (glm::length(e) < 1e-9) e = glm::cross(t[best.node], in.rotation * Vec3{0.36, 0.48, 0.8});
     e = glm::normalize(e);
     Vec3 at_node = kept;
     for (std::size_t i = 0; i < best.node; ++i) at_node = parallel_transport(at_node, t[i], t[i + 1]);
+    at_node += kAside * glm::cross(t[best.node], at_node);
     if (glm::dot(at_node, e) < 0) e = -e;
     return best;
 }

@@ -103,7 +103,9 @@ struct WetFilm::State : TileList {
     void end(const Canvas& canvas) {
         list.clear();
         sources.clear();
-        if (!canvas.wet()) workers.clear();
+        if (canvas.wet()) return;
+        workers.clear();
+        seepage.release();
     }
 
     void report_slot(std::uint32_t slot, const BeforeFn& before) {
@@ -469,7 +471,10 @@ struct WetFilm::State : TileList {
             if (sources.empty()) prepare(canvas);
             if (!seepage.find(*this, sources)) return;
             for (const Active& tile : list) report_slot(tile.slot, before);
-            const double dt = seepage.solve(*this, sources, left);
+            const bool fed =
+                std::any_of(list.begin(), list.end(), [](const Active& t) { return t.outcome.most_w > 0; });
+            const double most = fed ? seepage.fresh_step(map) : left;
+            const double dt = seepage.solve(*this, sources, left > most ? left / std::ceil(left / most) : left);
             seeps = true;
             step(canvas, params, rates, report.steps | ++n << 56, report);
             seeps = false;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kGrain = 8;  // tiles
 constexpr int kMostStages = 60;
+constexpr double kFreshStep = 0.05;  // seconds
 // Film units: by so little rounding may bring an amount below 0.
 constexpr float kRounding = 1e-5f;
 constexpr float kMostNear = 8;         // of what smears between two texels, over that of whole texels side by side
@@ -102,12 +103,15 @@ const float* Seepage::plane_of(const SeepTile& tile, int plane) {
 }
 
 bool Seepage::run_stages(const TileList& tiles, double flow, double soak, int n_stages) {
-    for (auto& t : tiles_) {
-        t->faces = {};
-        t->soaked = {};
-        for (SeepLink& l : t->links) l.through = {};
-        t->beyond.fill(0);
-    }
+    parallel_for(tiles_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            SeepTile& t = *tiles_[i];
+            t.faces = {};
+            t.soaked = {};
+            for (SeepLink& l : t.links) l.through = {};
+            t.beyond.fill(0);
+        }
+    });
     for (int j = 1; j <= n_stages; ++j) {
         const SeepStage stage{
             .flow = static_cast<float>(flow * params_.pores / (kSaturationPower + 1) / part_of(n_stages)),
@@ -132,6 +136,11 @@ void Seepage::run_stage(const TileList& tiles, SeepTile& tile, int from, const S
         tile.beyond[l.texel] += l.through[static_cast<std::size_t>(1 - stage.from)];
     }
     seep_stage(tile, padded(tile, from), *tiles.list[tile.place].geometry, stage);
+}
+
+double Seepage::fresh_step(const atlas::TexelMap& map) const {
+    const double area = map.texel_size * map.texel_size;
+    return std::max(kFreshStep, params_.suction > 0 ? area / params_.suction : 0);
 }
 
 double Seepage::solve(const TileList& tiles, std::span<const Sources> sources, double dt) {

@@ -87,8 +87,13 @@ void seepage_flow(Work& work, const SeepTile& tile, const Geometry& g, int last,
 class Seepage {
   public:
     void start(const FilmParams& params) { params_ = params; }
+    /// Gives its memory back, 20 KiB a tile.
+    void release() { tiles_.clear(), spare_.clear(); }
     /// Chooses the tiles with liquid and those around them. Whether there are any.
     bool find(const TileList& tiles, std::span<const Sources> sources);
+    /// Returns the greatest step, seconds, that follows fronts which start from a film: 50 ms, or longer where none
+    /// runs more than a texel in it.
+    double fresh_step(const atlas::TexelMap& map) const;
     /// Finds what flows on those tiles in `dt` seconds or the first part of it. Returns the seconds.
     double solve(const TileList& tiles, std::span<const Sources> sources, double dt);
     /// Of a place in the list; null: not among those tiles.
