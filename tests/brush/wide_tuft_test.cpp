@@ -300,5 +300,25 @@ TEST(WideTuft, InkHoldsSpinesTogether) {
     EXPECT_GT(widest_opening(0), widest_opening(1));
 }
 
+/// A wet filbert that turns as it is lifted stays whole: its shorter outer spines leave the surface first and splay by
+/// more than ink bridges, which the hair between shares.
+TEST(WideTuft, AWetFilbertThatTurnsAsItLiftsStaysWhole) {
+    const Preset p = load_preset("filbert-12");
+    Tuft tuft = make_tuft(p, 7);
+    double widest = -1, splayed = -1;
+    for (int i = 0; i <= 200; ++i) {
+        const double gone = 20e-3 * i / 200, turned = std::clamp(i / 200.0 - 0.3, 0.0, 1.0);
+        Pose pose;
+        pose.rotation = glm::angleAxis(-2.2 * turned, Vec3{0, 0, 1});
+        pose.position = {0.4 * gone * turned, -gone, p.length * (0.75 + 0.36 * turned)};
+        if (i < 40) pose.position.z = p.length * (1 - 0.25 * i / 40);
+        const TuftState state = step(tuft, pose, std::span(&kGround, 1), 5e-3);
+        for (const Opening& opening : state.openings) widest = std::max(widest, opening.width.front());
+        for (const Beside& beside : tuft.beside) splayed = std::max(splayed, beside.gap.back());
+    }
+    EXPECT_GT(splayed, 0.6e-3);
+    EXPECT_LT(widest, 0);
+}
+
 }  // namespace
 }  // namespace tuft::brush

@@ -305,6 +305,78 @@ TEST(WideOutline, AnEdgeThatLeapsMarksAllThatItPassesOver) {
     }
 }
 
+/// The lower edge of a tilted flat touches first, and as it comes down the patch grows over the hair between the
+/// spines: of a rigid edge at the angle θ by dδ / sin θ, which bending only makes less.
+TEST(WideOutline, ATiltedEdgeComesDownWithoutSteps) {
+    constexpr double kTilt = 0.15, kStep = 1e-5;
+    const brush::Preset p = brush::load_preset("flat-12");
+    brush::Tuft tuft = brush::make_tuft(p, 5);
+    const brush::ContactPlane plane;
+    const double edge = 0.5 * p.width * std::sin(kTilt);
+    double before = 0, grown = 0;
+    for (int i = 0; i <= 240; ++i) {
+        brush::Pose pose;
+        pose.rotation = glm::angleAxis(kTilt, Vec3{0, 1, 0});
+        pose.position = {0, 0, p.length * std::cos(kTilt) + edge - kStep * i};
+        const brush::TuftState state = brush::step(tuft, pose, std::span(&plane, 1), 1e-3);
+        const double width = extent_of(outlines_of(state, kFlat, {}, {.film = 1e-4})).width();
+        if (before > 0) grown = std::max(grown, width - before);
+        before = std::max(width, 0.0);
+    }
+    EXPECT_GT(before, 0.8 * p.width);
+    // A spine is 2.4 mm wide. The rigid edge would gain 0.07 mm a step; hair that falls over gains more at once.
+    EXPECT_LT(grown, 0.25 * p.width / p.spines);
+}
+
+/// A trail of a spine that lies along x, `b` thick, its broad side along y.
+Trail lying_trail(int branch, const Vec2& at, double a, double b) {
+    Trail trail{.branch = branch, .strip = true};
+    for (const double x : {1e-3, 0.0}) {
+        Cut cut{.centre = at + Vec2{x, 0}, .a = a, .b = b};
+        cut.e = {0, 1, 0};
+        trail.cuts.push_back(cut);
+        trail.along.push_back(0.9 + x);
+    }
+    trail.trunk = 2;
+    return trail;
+}
+
+/// The strips of two spines that splay meet midway between them, to three times their half-width, at constant area.
+TEST(WideOutline, HairBetweenSplayedSpinesMeetsMidway) {
+    constexpr double kHalf = 1e-3, kThick = 2e-4, kChord = Trail::kStripChord;
+    for (const double apart : {1e-3, 3e-3, 5e-3, 9e-3}) {
+        std::vector<Trail> trails{lying_trail(0, {0, 0}, kHalf, kThick), lying_trail(1, {0, apart}, kHalf, kThick)};
+        trails[0].openings.push_back({1, {0.0, 0.0}});
+        fill_rows(trails);
+        const double reach = std::clamp(0.5 * apart, kChord * kHalf, 3 * kChord * kHalf);
+        for (const Cut& cut : trails[0].cuts) {
+            EXPECT_NEAR(cut.centre.y + kChord * cut.a, reach, 1e-12) << apart;
+            EXPECT_NEAR(cut.centre.y - kChord * cut.a, -kChord * kHalf, 1e-12) << apart;
+            EXPECT_NEAR(cut.a * cut.b, kHalf * kThick, 1e-18) << apart;
+        }
+        for (const Cut& cut : trails[1].cuts) EXPECT_NEAR(cut.centre.y - kChord * cut.a, apart - reach, 1e-12) << apart;
+    }
+}
+
+/// Between two poses of hair that leapt, trails follow each other by less than 0.4 of their extent, from the one to
+/// the other.
+TEST(WideOutline, NoGapIsLeftWhereHairLeapt) {
+    const std::vector<Trail> before{lying_trail(2, {0, 0}, 1e-3, 2e-4)}, now{lying_trail(2, {3e-3, 1e-3}, 1e-3, 2e-4)};
+    const std::vector<Trail> passed = trails_passed(now, before);
+    ASSERT_GT(passed.size(), 2u);
+    // Along its hair it is 1 mm long.
+    const double most = 0.4 * 1.5e-3;
+    Vec2 at = before[0].cuts[0].centre;
+    for (const Trail& trail : passed) {
+        EXPECT_EQ(trail.branch, 2);
+        EXPECT_LT(glm::distance(trail.cuts[0].centre, at), most);
+        EXPECT_GT(trail.cuts[0].centre.x, at.x);
+        at = trail.cuts[0].centre;
+    }
+    EXPECT_LT(glm::distance(now[0].cuts[0].centre, at), most);
+    EXPECT_TRUE(trails_passed(now, {}).empty());
+}
+
 /// Spines that are not joined keep outlines of their own; joined ones get one more between two, and one at the heel.
 TEST(WideOutline, OutlinesFollowTheOpenings) {
     brush::TuftState tuft = dragged("flat-12");
