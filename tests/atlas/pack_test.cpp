@@ -118,6 +118,19 @@ TEST(Pack, FinerTurnsCoverMoreOfThePage) {
     EXPECT_GT(gained / kSets, 0.01);
 }
 
+// Cells of four texels, on which the search begins, leave room for 170 strips of six texels in two columns: only a
+// third column of shorter ones would hold all.
+TEST(Pack, NarrowStripsFillThePage) {
+    const double width = 0.012;
+    const std::vector<Polygon> strips(176, {{0, 0}, {1, 0}, {1, width}, {0, width}});
+    PackOptions options;
+    options.size = 1024;
+    const Packing packing = pack(strips, options);
+    // Two strips, a gutter and two margins in a row. The search ends within 0.4 % of what fits, and masks round up.
+    EXPECT_GE(packing.texels_per_unit, 0.98 * (1024 - 2 * 4) / 2.0);
+    EXPECT_LE(packing.texels_per_unit, (1024 - 2 * 4) / 2.0);
+}
+
 TEST(Pack, SquaresFillThePage) {
     const std::vector<Polygon> squares(16, {{0, 0}, {1, 0}, {1, 1}, {0, 1}});
     PackOptions options;

@@ -269,6 +269,45 @@ TEST(Unwrap, CutsChartsThatWouldLeaveThePageHalfEmpty) {
     EXPECT_NEAR(u.report.l2_stretch, 1, 1e-6);  // halves lie as the whole did
 }
 
+/// Frames open at one side, and more squares than a few in between.
+TriangleMesh frames_and_squares() {
+    constexpr int kSide = 20, kWidth = 2, kFrames = 8, kSquares = 56;
+    std::vector<Vec3f> p;
+    test::Triangles t;
+    const auto add = [&](double size, double z, const auto& inside) {
+        const auto first = static_cast<std::uint32_t>(p.size());
+        for (int j = 0; j <= kSide; ++j)
+            for (int i = 0; i <= kSide; ++i) p.push_back(Vec3f(Vec3(size * i / kSide, size * j / kSide, z)));
+        const auto at = [&](int i, int j) { return first + static_cast<std::uint32_t>(j * (kSide + 1) + i); };
+        for (int j = 0; j < kSide; ++j)
+            for (int i = 0; i < kSide; ++i) {
+                if (!inside(i, j)) continue;
+                t.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+                t.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+            }
+    };
+    for (int f = 0; f < kFrames; ++f)
+        add(1 + 0.03 * f, f, [](int i, int j) { return i < kWidth || i >= kSide - kWidth || j < kWidth; });
+    for (int s = 0; s < kSquares; ++s) add(0.02 + 1e-3 * s, kFrames + s, [](int, int) { return true; });
+    return test::finish_mesh(p, t);
+}
+
+// Eight open frames are as large as eight squares while they are whole, of which they cover a quarter.
+TEST(Unwrap, CutsFramesAmongManyCharts) {
+    const TriangleMesh m = frames_and_squares();
+    UnwrapOptions options;
+    options.size = 1024;
+    options.cutting = Cutting::never;
+    const Unwrapped whole = unwrap(m, options);
+    EXPECT_EQ(whole.report.charts, 64u);
+    options.cutting = Cutting::where_useful;
+    const Unwrapped u = unwrap(m, options);
+    expect_sound(m, u);
+    EXPECT_GT(u.report.charts, whole.report.charts);
+    EXPECT_GE(u.report.utilisation, std::min(0.65, 1.2 * whole.report.utilisation));
+    EXPECT_NEAR(u.report.l2_stretch, 1, 1e-6);  // halves lie as the whole did
+}
+
 TEST(Unwrap, TexelSizeIsKept) {
     const TriangleMesh m = test::torus();
     UnwrapOptions options;

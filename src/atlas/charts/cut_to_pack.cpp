@@ -1,7 +1,6 @@
 #include "atlas/charts/cut_to_pack.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -27,6 +26,7 @@ constexpr std::size_t kLongCandidates = 16;     // longest charts that are tried
 constexpr std::size_t kCandidatesOfMany = 16;   // charts with the emptiest boxes that are tried of many
 constexpr std::size_t kFewCharts = 48;          // with more, small ones fill the gaps between large ones
 constexpr double kCutGainOfMany = 1.004;        // `kCutGain` for many charts, of which each is a small part
+constexpr double kWithinReach = 0.5;            // of the goal, below which many charts are too narrow for it
 constexpr double kEmpty = 0.01;                 // of the surface, by which a box is larger than its chart
 constexpr std::size_t kMostTriangles = 200000;  // triangles of a chart that is left as it is
 
@@ -93,22 +93,101 @@ std::optional<FlatChart> part_of(const Whole& of, std::span<const std::uint32_t>
     return part;
 }
 
-std::optional<Halves> halve(const mesh::TriangleMesh& mesh, const CutMesh& cut, const FlatChart& chart, double gap) {
+/// A straight line across a flat chart.
+struct Line {
+    Vec2 across{1, 0};  // unit
+    double at = 0;      // distance from the origin
+
+    bool beyond(const FlatChart& chart, std::uint32_t face) const {
+        Vec2 middle(0);
+        for (const std::uint32_t v : chart.mesh.faces[face]) middle += chart.uv[v] / 3.0;
+        return glm::dot(across, middle) > at;
+    }
+};
+
+/// Least and largest distance of a chart's points from a line through the origin.
+std::pair<double, double> extent_across(const FlatChart& chart, const Vec2& across) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vec2& p : chart.uv) {
+        low = std::min(low, glm::dot(across, p));
+        high = std::max(high, glm::dot(across, p));
+    }
+    return {low, high};
+}
+
+/// The line across the middle of the longer side of the smallest rectangle.
+Line middle_line(const FlatChart& chart) {
+    const Rectangle box = smallest_rectangle(chart_hull(chart));
+    const Vec2 across(box.c, box.s);
+    return {across, extent_across(chart, across).first + 0.5 * box.length};
+}
+
+/// Sum of the areas of the rectangles, with sides along and across the line, around the parts that a line leaves.
+double boxes_beside(const FlatChart& chart, const Line& line) {
+    const ChartMesh& m = chart.mesh;
+    const Vec2 along(-line.across.y, line.across.x);
+    std::vector<std::uint8_t> beyond(m.faces.size()), seen(m.faces.size(), 0);
+    for (std::uint32_t f = 0; f < beyond.size(); ++f) beyond[f] = line.beyond(chart, f);
+    double sum = 0;
+    std::vector<std::uint32_t> stack;
+    for (std::uint32_t first = 0; first < seen.size(); ++first) {
+        if (seen[first]) continue;
+        seen[first] = 1;
+        stack.assign(1, first);
+        Vec2 low(std::numeric_limits<double>::infinity()), high = -low;
+        while (!stack.empty()) {
+            const std::uint32_t f = stack.back();
+            stack.pop_back();
+            for (const std::uint32_t v : m.faces[f]) {
+                const Vec2 p(glm::dot(line.across, chart.uv[v]), glm::dot(along, chart.uv[v]));
+                low = glm::min(low, p);
+                high = glm::max(high, p);
+            }
+            for (std::uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
+                const std::uint32_t g = m.twin[h];
+                if (g == kNone || seen[g / 3] || beyond[g / 3] != beyond[f]) continue;
+                seen[g / 3] = 1;
+                stack.push_back(g / 3);
+            }
+        }
+        sum += (high.x - low.x) * (high.y - low.y);
+    }
+    return sum;
+}
+
+/// The line along or across the smallest rectangle that leaves the fullest boxes, as at the corner of a frame; nothing
+/// where none leaves much fuller ones.
+std::optional<Line> emptying_line(const FlatChart& chart) {
+    constexpr int kLines = 31;
+    constexpr double kMuch = 0.75;  // of the area of the chart's own box
+    constexpr std::size_t kMostFaces = 20000;
+    if (chart.mesh.faces.size() > kMostFaces) return std::nullopt;
+    const Rectangle box = smallest_rectangle(chart_hull(chart));
+    std::optional<Line> best;
+    double least = kMuch * box.length * box.width;
+    for (const Vec2& across : {Vec2(box.c, box.s), Vec2(-box.s, box.c)}) {
+        const auto [low, high] = extent_across(chart, across);
+        for (int k = 1; k <= kLines; ++k) {
+            const Line line{across, low + (high - low) * k / (kLines + 1)};
+            const double sum = boxes_beside(chart, line);
+            if (sum >= least) continue;
+            least = sum;
+            best = line;
+        }
+    }
+    return best;
+}
+
+/// The parts of a chart on both sides of a line.
+std::optional<Halves> divide(const mesh::TriangleMesh& mesh, const CutMesh& cut, const FlatChart& chart, double gap,
+                             const Line& line) {
     const ChartMesh& m = chart.mesh;
     if (m.faces.size() < 2 || m.faces.size() > kMostTriangles) return std::nullopt;
-    const Rectangle box = smallest_rectangle(chart_hull(chart));
-    double lo = std::numeric_limits<double>::infinity();
-    for (const Vec2& p : chart.uv) lo = std::min(lo, box.c * p.x + box.s * p.y);
-    const auto upper = [&](std::uint32_t f) {
-        Vec2 middle(0);
-        for (const std::uint32_t v : m.faces[f]) middle += chart.uv[v] / 3.0;
-        return box.c * middle.x + box.s * middle.y > lo + 0.5 * box.length;
-    };
     const Patch patch = make_patch(mesh, cut.glued, m.triangles, cut.unit);
     std::vector<std::uint8_t> seam(patch.twin.size());
     for (std::uint32_t h = 0; h < seam.size(); ++h) {
         const std::uint32_t g = patch.twin[h];
-        seam[h] = g == kNone || upper(h / 3) != upper(g / 3);
+        seam[h] = g == kNone || line.beyond(chart, h / 3) != line.beyond(chart, g / 3);
     }
     straighten_seams(patch, seam);
 
@@ -169,8 +248,22 @@ std::vector<std::uint32_t> largest_by(const std::vector<ChartBox>& boxes, double
 std::vector<std::optional<Halves>> halve_all(const mesh::TriangleMesh& mesh, const CutMesh& cut,
                                              std::span<const std::uint32_t> charts, double gap) {
     std::vector<std::optional<Halves>> halves(charts.size());
-    run_tasks(charts.size(), [&](std::size_t i) { halves[i] = halve(mesh, cut, cut.charts[charts[i]], gap); });
+    run_tasks(charts.size(), [&](std::size_t i) {
+        const FlatChart& chart = cut.charts[charts[i]];
+        halves[i] = divide(mesh, cut, chart, gap, middle_line(chart));
+    });
     return halves;
+}
+
+/// The same by lines that leave full boxes.
+std::vector<std::optional<Halves>> separate_all(const mesh::TriangleMesh& mesh, const CutMesh& cut,
+                                                std::span<const std::uint32_t> charts, double gap) {
+    std::vector<std::optional<Halves>> parts(charts.size());
+    run_tasks(charts.size(), [&](std::size_t i) {
+        const FlatChart& chart = cut.charts[charts[i]];
+        if (const std::optional<Line> line = emptying_line(chart)) parts[i] = divide(mesh, cut, chart, gap, *line);
+    });
+    return parts;
 }
 
 /// All charts that are about as long as the longest, which may be all that keeps the rest small.
@@ -199,19 +292,19 @@ std::vector<Proposal> proposals_of_few(const mesh::TriangleMesh& mesh, const Cut
     return all;
 }
 
-/// Frames, bows and bent strips, whose boxes are emptiest: one, two, four of them and so on. A single cut among many
+/// Frames, bows and bent strips, whose boxes are emptiest: one, four, sixteen of them. A single cut among many
 /// charts shows little.
 std::vector<Proposal> proposals_of_many(const mesh::TriangleMesh& mesh, const CutMesh& cut,
                                         const std::vector<ChartBox>& boxes, double gap) {
     std::vector<std::uint32_t> order = largest_by(boxes, &ChartBox::empty, kCandidatesOfMany);
     std::erase_if(order, [&](std::uint32_t c) { return boxes[c].empty < kEmpty; });
-    const std::vector<std::optional<Halves>> halves = halve_all(mesh, cut, order, gap);
+    const std::vector<std::optional<Halves>> halves = separate_all(mesh, cut, order, gap);
     std::vector<Proposal> all;
     Proposal together;
     for (std::size_t i = 0; i < order.size(); ++i) {
         if (halves[i]) together.push_back({order[i], *halves[i]});
         const bool last = i + 1 == order.size();
-        if (!together.empty() && (last || std::has_single_bit(i + 1))) all.push_back(together);
+        if (!together.empty() && (last || i == 0 || i == 3)) all.push_back(together);
     }
     return all;
 }
@@ -310,6 +403,7 @@ CutToPack cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, 
     CutMesh tried = cut;
     int cuts = 0;
     const bool many = cut.charts.size() > kFewCharts;
+    if (many && use < kWithinReach * goal) return result;
     const int most_cuts = many ? kMostCutsOfMany : kMostCuts;
     const double gain = many ? kCutGainOfMany : kCutGain;
     for (double now = use; cuts < most_cuts && now < goal;) {
@@ -324,7 +418,10 @@ CutToPack cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, 
         cuts += more;
         Packing packing = pack_well(chart_borders(tried), area, options, goal);
         now = use_of(packing, area);
-        if (now < goal && now < std::pow(gain, cuts - result.cuts) * use) continue;
+        if (now < goal && now < std::pow(gain, cuts - result.cuts) * use) {
+            if (many) break;
+            continue;
+        }
         use = now;
         cut = tried;
         result.cuts = cuts;

@@ -14,8 +14,10 @@ struct CutToPack {
 };
 
 /// Halves large charts across their length where this covers the page better: rings, long bows, a few large
-/// squares. Continues only while less than `goal` of the page is covered. Cuts are retained if each gains the
-/// factor `kCutGain` or they reach the goal. The halves retain the UVs of the whole. `gap` as in `ChartOptions`.
+/// squares. Of more than 48 charts, those whose boxes are emptiest are cut where the fullest boxes remain. Continues
+/// only while less than `goal` of the page is covered. Cuts are retained if each gains the factor `kCutGain` (1.004 of
+/// many charts) or they reach the goal; of those that do, the shortest are made. The halves retain the UVs of the
+/// whole. `gap` as in `ChartOptions`.
 CutToPack cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, PackOptions options, double goal);
 
 inline constexpr double kGoodUse = 0.65;   ///< sufficient covered fraction of a page

@@ -10,7 +10,9 @@
 namespace tuft::atlas {
 namespace {
 
-constexpr double kLeastStretch = 0.99, kMostStretch = 1.01;  // between equal parts
+constexpr double kStretch = 1.01;      // between equal parts, and its inverse
+constexpr double kSmallStretch = 1.4;  // the same of small triangles, whose corners are rounded in files
+constexpr double kSmall = 1e-5;        // of a part's area
 constexpr double kFlat = 1e-12;        // squared area over fourth power of a side: shape unknown from floats
 constexpr std::size_t kMostKinds = 8;  // kinds of equal area that a part is compared with
 constexpr std::size_t kMostWork = 32;  // triangles compared for a pair of parts, over those of one
@@ -60,17 +62,17 @@ Sides sides_of(const mesh::TriangleMesh& mesh, const std::array<std::uint32_t, 3
     return {glm::dot(a, a), glm::dot(a, b), glm::dot(b, b)};
 }
 
-/// Whether the linear map between two triangles stretches within the limits.
-bool equal_triangles(const Sides& p, const Sides& q) {
-    constexpr double kLeast = kLeastStretch * kLeastStretch, kMost = kMostStretch * kMostStretch;
+/// Whether the linear map between two triangles stretches by less than a factor.
+bool equal_triangles(const Sides& p, const Sides& q, double factor) {
+    const double most_square = factor * factor, least_square = 1 / most_square;
     const double longest = std::max(p.aa, p.bb), area = p.squared_area();
     if (!(area > kFlat * longest * longest)) {
-        const double most = (kMost - 1) * longest;
+        const double most = (most_square - 1) * longest;
         return std::abs(p.aa - q.aa) <= most && std::abs(p.bb - q.bb) <= most && std::abs(p.ab - q.ab) <= most;
     }
     const double mean = 0.5 * (p.bb * q.aa - 2 * p.ab * q.ab + p.aa * q.bb) / area;
     const double spread = std::sqrt(std::max(0.0, mean * mean - q.squared_area() / area));
-    return mean - spread >= kLeast && mean + spread <= kMost;
+    return mean - spread >= least_square && mean + spread <= most_square;
 }
 
 class PartMatcher {
@@ -81,6 +83,7 @@ class PartMatcher {
     /// Finds which half-edge of the first corresponds to each of the other; false when the parts differ.
     bool match(const Part& first, const Part& other) {
         const double area = area_of(mesh_, first.seed);
+        small_ = 4 * kSmall * kSmall * first.area * first.area;
         std::size_t work = kMostWork * other.triangles.size();
         for (const bool mirrored : {false, true})
             for (const std::uint32_t t : other.triangles) {
@@ -119,7 +122,9 @@ class PartMatcher {
         const std::array<std::uint32_t, 3> own{h, next_half(h), prev_half(h)};
         const std::array<std::uint32_t, 3> corners =
             mirrored ? std::array{next_half(s), s, prev_half(s)} : std::array{s, next_half(s), prev_half(s)};
-        if (!equal_triangles(sides_of(mesh_, corners), sides_of(mesh_, own))) return false;
+        const Sides first = sides_of(mesh_, corners);
+        const double factor = first.squared_area() > small_ ? kStretch : kSmallStretch;
+        if (!equal_triangles(first, sides_of(mesh_, own), factor)) return false;
         out_.source[h] = s;
         out_.source[next_half(h)] = mirrored ? prev_half(s) : next_half(s);
         out_.source[prev_half(h)] = mirrored ? next_half(s) : prev_half(s);
@@ -132,6 +137,7 @@ class PartMatcher {
     std::span<const std::uint32_t> twin_;
     EqualParts& out_;
     Triangles reached_;
+    double small_ = 0;  // squared area of a parallelogram of two sides
 };
 
 std::vector<Part> parts_of(const mesh::TriangleMesh& mesh, std::span<const std::uint32_t> twin) {

@@ -11,9 +11,9 @@
 namespace tuft::atlas {
 
 /// The kinds of parts of a mesh. A part is a set of triangles that are connected over `twin`. Two parts are equal when
-/// their triangles correspond, neighbour to neighbour, with a stretch between 0.99 and 1.01: one is the other moved, or
-/// its mirror image. Equal parts that are bent differently have the same charts too, because flattening depends on
-/// lengths only.
+/// their triangles correspond, neighbour to neighbour, with a stretch between 1 / 1.01 and 1.01: one is the other
+/// moved, or its mirror image. Triangles below 1e-5 of a part's area, which rounding in files changes, may stretch
+/// by 1.4. Equal parts that are bent differently have the same charts too, because flattening depends on lengths only.
 struct EqualParts {
     std::vector<std::uint32_t> kept;  ///< triangles of the first part of each kind, ascending
     std::vector<std::uint32_t> part;  ///< [n_triangles] index of the part

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -41,6 +42,7 @@ class Mover {
           cut_(cut),
           options_(options),
           least_value_(mesh.n_triangles() < kBlockwiseThreshold ? kLeastValue : kLeastValueLarge),
+          n_represented_(n_represented(mesh, cut)),
           budget_(cut, options.l2_all),
           patch_(whole_patch(mesh, cut)),
           paths_(patch_, seam_flags(cut), chart_of(mesh, cut)) {
@@ -76,6 +78,11 @@ class Mover {
     }
 
   private:
+    static double n_represented(const mesh::TriangleMesh& mesh, const CutMesh& cut) {
+        return cut.copies.empty() ? double(mesh.n_triangles())
+                                  : std::accumulate(cut.copies.begin(), cut.copies.end(), 0.0);
+    }
+
     static std::vector<std::uint32_t> chart_of(const mesh::TriangleMesh& mesh, const CutMesh& cut) {
         std::vector<std::uint32_t> chart(mesh.n_triangles());
         for (std::uint32_t c = 0; c < cut.charts.size(); ++c)
@@ -121,7 +128,7 @@ class Mover {
         }
         double length = 0;
         for (const std::uint32_t g : c.chain) length += patch_.length[g];
-        const double work = double(n_triangles(c.trial)) / double(mesh_.n_triangles());
+        const double work = double(n_triangles(c.trial)) / n_represented_;
         const double least = std::max(kLeastSaved * length, least_value_ * work);
         for (; *c.rejected < kReaches; ++*c.rejected) {
             c.trial.move = paths_.shorten(c.chain, kReach[*c.rejected], Corners::move, search);
@@ -293,6 +300,7 @@ class Mover {
     CutMesh& cut_;
     const ChartOptions& options_;
     double least_value_;
+    double n_represented_;  // triangles of the mesh and of what equals its parts
     StretchBudget budget_;
     Patch patch_;
     SeamPaths paths_;
