@@ -1,10 +1,13 @@
 // Measures the writer on characters of a folder of hanzi-writer-data:
 //   measure_writer sides DATA CHARACTERS                     features and measured sides of each stroke, a line each
 //   measure_writer score DATA CHARACTERS [--fit 1] [--brush NAME] [--side MM] [--tries N] [--step UNITS] [--verbose 1]
-//                                                          [--weak FOLDER]
-// CHARACTERS is a file. --weak writes a picture (.ppm) of each stroke below 0.92: wanted grey, missing red, extra blue,
-// the path of the brush green. `score` draws the writer's strokes on a plane, without texels, and compares their union
-// with the outlines in cells of 2 units; score_painted.py compares what `tuft write` painted.
+//                                                          [--weak FOLDER] [--plain 1]
+//   measure_writer copy DATA CHARACTERS                      strokes that are found again in a picture of the character
+// CHARACTERS is a file. --weak writes a picture (.ppm) of each stroke below 0.92 (--below): wanted grey, missing red,
+// extra blue, the path of the brush green. --plain takes the cue of the head off the centre lines: a first segment of
+// less than 60 units, as sources without it (KanjiVG) have them. `score` draws the writer's strokes on a plane, without
+// texels, and compares their union with the outlines in cells of 2 units; score_painted.py compares what `tuft write`
+// painted.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +18,8 @@
 
 #include "core/error.h"
 #include "core/system/files.h"
+#include "writer/copy/copied_glyph.h"
+#include "writer/copy/photo.h"
 #include "writer/fit/writer.h"
 #include "writer/glyphs/glyph_source.h"
 
@@ -74,6 +79,75 @@ void write_weak(const std::string& path, const Cells& wanted, const Cells& drawn
     write_file(path, ppm.data(), ppm.size());
 }
 
+void take_cues_off(Glyph& glyph) {
+    for (GlyphStroke& s : glyph.strokes) {
+        const StrokeLine line = make_stroke_line(s.median);
+        if (line.segments.size() < 2 || line.segments[0].length > 60) continue;
+        s.median.assign(line.points.begin() + static_cast<std::ptrdiff_t>(line.segments[0].last), line.points.end());
+    }
+}
+
+/// A picture of a character, a pixel a unit.
+io::Image8 picture_of(const Glyph& glyph) {
+    Cells cells{.lo = Vec2(-60), .cell = 1, .width = 1144, .height = 1144};
+    cells.inside.assign(std::size_t(cells.width) * cells.height, 0);
+    for (const GlyphStroke& s : glyph.strokes) fill(cells, s.outline);
+    io::Image8 image{.width = cells.width, .height = cells.height, .channels = 1, .pixels = {}};
+    for (int j = cells.height - 1; j >= 0; --j)
+        for (int i = 0; i < cells.width; ++i) image.pixels.push_back(cells.at(i, j) ? 20 : 235);
+    return image;
+}
+
+/// Points of a stroke's line at equal parts of its length.
+std::vector<Vec2> parts_of_line(const std::vector<Vec2>& median) {
+    const StrokeLine line = make_stroke_line(median);
+    std::vector<Vec2> out;
+    for (int k = 0; k <= 10; ++k) out.push_back(line.at(line.length() * k / 10));
+    return out;
+}
+
+/// Prints how many strokes the copy of a picture has, how many of the character's are among them (the mean distance at
+/// eleven places below 40 units, in the direction of writing), and how many pairs of these are in order.
+void print_copies(const std::string& folder, const std::u32string& characters) {
+    int right = 0, strokes = 0, found = 0, pairs = 0, ordered = 0;
+    for (const char32_t code : characters) {
+        const Glyph glyph = load(folder, code);
+        const Cells ink = ink_of(picture_of(glyph), utf8_of(code));
+        const Skeleton skeleton = skeleton_of(ink);
+        Glyph copy = copied_glyph(ink, skeleton, order_by_rules(skeleton), code);
+        Vec2 lo(1e300), hi(-1e300), own_lo(1e300), own_hi(-1e300);
+        for (const GlyphStroke& s : glyph.strokes)
+            for (const Ring& r : s.outline)
+                for (const Vec2& p : r) lo = glm::min(lo, p), hi = glm::max(hi, p);
+        for (const Ring& r : boundaries(ink, 0))
+            for (const Vec2& p : r) own_lo = glm::min(own_lo, p), own_hi = glm::max(own_hi, p);
+        for (GlyphStroke& s : copy.strokes)
+            for (Vec2& p : s.median) p = lo + (p - own_lo) / (own_hi - own_lo) * (hi - lo);
+        std::vector<int> at;
+        for (const GlyphStroke& s : glyph.strokes) {
+            const std::vector<Vec2> wanted = parts_of_line(s.median);
+            int best = -1;
+            double least = 40;
+            for (std::size_t k = 0; k < copy.strokes.size(); ++k) {
+                const std::vector<Vec2> line = parts_of_line(copy.strokes[k].median);
+                double far = 0;
+                for (std::size_t i = 0; i < line.size(); ++i) far += glm::distance(line[i], wanted[i]) / 11;
+                if (far < least) least = far, best = static_cast<int>(k);
+            }
+            if (best >= 0) at.push_back(best);
+        }
+        strokes += static_cast<int>(glyph.strokes.size()), found += static_cast<int>(at.size());
+        right += copy.strokes.size() == glyph.strokes.size();
+        for (std::size_t a = 0; a < at.size(); ++a)
+            for (std::size_t b = a + 1; b < at.size(); ++b) ++pairs, ordered += at[a] < at[b];
+        fmt::print("{} {} of {} strokes, {} found\n", utf8_of(code), copy.strokes.size(), glyph.strokes.size(),
+                   at.size());
+    }
+    fmt::print(
+        "{} characters, {} with the right number of strokes; {:.3f} of {} strokes found, {:.3f} of {} pairs in order\n",
+        characters.size(), right, double(found) / strokes, strokes, double(ordered) / pairs, pairs);
+}
+
 struct Sum {
     double iou = 0;
     int n = 0;
@@ -100,6 +174,10 @@ int main(int argc, char** argv) {
         for (const char32_t code : characters) print_sides(load(words.at(1), code));
         return 0;
     }
+    if (words.at(0) == "copy") {
+        print_copies(words.at(1), characters);
+        return 0;
+    }
     WriterOptions with{.style = load_style("kaishu"), .side = number("side", 133) * 1e-3, .fit = number("fit", 0) > 0};
     if (options.contains("brush")) with.brush = options["brush"];
     with.style.tries = static_cast<int>(number("tries", with.style.tries));
@@ -112,7 +190,8 @@ int main(int argc, char** argv) {
     std::size_t n_strokes = 0;
     double seconds = 0;
     for (const char32_t code : characters) {
-        const Glyph glyph = load(words.at(1), code);
+        Glyph glyph = load(words.at(1), code);
+        if (options.contains("plain")) take_cues_off(glyph);
         const std::clock_t start = std::clock();
         const std::vector<WrittenStroke> written = writer.write({glyph}).front();
         seconds += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
@@ -135,7 +214,7 @@ int main(int argc, char** argv) {
             Sum& sum = classes[make_stroke_line(glyph.strokes[s].median).stroke_class()];
             sum.iou += overlap.iou(), ++sum.n, ++n_strokes;
             if (options.contains("verbose")) fmt::print("  {} {:.3f}\n", written[s].label, overlap.iou());
-            if (options.contains("weak") && overlap.iou() < 0.92)
+            if (options.contains("weak") && overlap.iou() < number("below", 0.92))
                 write_weak(fmt::format("{}/{:.3f}-{}-{}.ppm", options["weak"], overlap.iou(), utf8_of(code), s + 1),
                            own, ink_cells, written[s].trace, hand.unit);
         }

@@ -10,7 +10,7 @@
 namespace tuft::writer {
 namespace {
 
-constexpr double kTwig = 1.3;          // of the room at its junction
+constexpr double kTwig = 1.8;          // of the room at its junction
 constexpr double kOne = 1.2;           // of the larger room of two junctions
 constexpr double kBefore = 12;         // units between the end of a centre line and the edge
 constexpr double kEndReach = 24;       // units of an end over which its direction is taken

@@ -20,6 +20,7 @@ constexpr double kHook = 0.35;                // of the run before: a hook is at
 constexpr double kLongestHook = 150;          // units
 constexpr double kThicker = 1.15;             // head of 提 over its end
 constexpr double kSameStart = 60;             // units
+constexpr double kAcross = 0.25;              // a unit to the right counts as so much downwards
 constexpr double kTaller = 1.4;               // a middle stroke over those beside it
 
 /// Pieces written without a corner.
@@ -325,7 +326,7 @@ class Sorting {
         std::stable_sort(set.begin(), set.end(), [&](std::size_t a, std::size_t b) {
             const auto key = [&](std::size_t i) {
                 const Vec2 p = strokes_[i].front().begin;
-                return -p.y + 0.4 * p.x;
+                return -p.y + kAcross * p.x;
             };
             return key(a) < key(b);
         });

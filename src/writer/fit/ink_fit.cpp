@@ -11,7 +11,7 @@ namespace {
 constexpr double kMove = 0.6, kPress = 0.5, kLengthen = 0.6;  // parts of an error taken back at once
 constexpr double kOwn = 60;              // units along the path within which ink is a station's own
 constexpr double kMostMoved = 60;        // units from the path of the first try
-constexpr double kTip = 5;               // units of half width at a tip
+constexpr double kTip = 16;              // units of half width at a tip
 constexpr double kGrown = 1.15;          // of the first half width, with kTip more: beyond it corners become balls
 constexpr double kEndFade = 20;          // units over which a moved end fades
 constexpr double kSoft = 2;              // stations of the Gaussian that smooths corrections

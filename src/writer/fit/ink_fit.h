@@ -38,7 +38,7 @@ struct FitResult {
 /// goes to the left or right of its nearest station, as area over station spacing; extra ink that another station, more
 /// than 60 units along the path, covered first lifts that one; cells beyond an end change the length. Smoothed over two
 /// stations, the path moves by 0.6 · ½ (left − right) and the half width grows by 0.5 · ½ (left + right) less the kick.
-/// Half widths stay below 5 units + the distance to the nearer tip. Returns the best try; deterministic. Cost: 0.1 ms
+/// Half widths stay below 16 units + the distance to the nearer tip. Returns the best try; deterministic. Cost: 0.1 ms
 /// per pose. Where the best try overlaps by less than `options.weak`, it begins again from `other`, if that is not
 /// empty, and the better of both goes on to the fine tries.
 FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& target, const BrushHand& hand,

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kMargin = 80;                 // units of cells around a stroke
 constexpr float kUnder = 0.25f;                // weight of an error under another stroke
-constexpr std::uint64_t kVersion = 7;          // of the fit
+constexpr std::uint64_t kVersion = 8;          // of the fit
 constexpr std::size_t kMostStations = 20'000;  // of a stroke
 
 double median_width(const stroke::LineWidths& widths, double unit) {
