@@ -460,9 +460,9 @@ TEST_F(Parts, OfGlassKeepTheirNamesAndGetATransmissionMap) {
     // The map is that of bare glass on the body, 0.9, and 0 elsewhere.
     std::set<int> values(maps.transmission.texels.begin(), maps.transmission.texels.end());
     EXPECT_THAT(values, ::testing::IsSupersetOf({0, 230}));
-    EXPECT_THAT(texts(export_model(folder / "out.obj", *model.mesh, model.atlas, maps, options)),
+    EXPECT_THAT(texts(export_model(folder / "plain.obj", *model.mesh, model.atlas, maps, options)),
                 Contains(HasSubstr("are of glass; this format has no map of it")));
-    EXPECT_FALSE(fs::exists(folder / "out_transmission.png"));
+    EXPECT_FALSE(fs::exists(folder / "plain_transmission.png"));
 }
 
 // Groups of colours, and projects made before scenes were kept.
