@@ -51,9 +51,14 @@ void main() {
     if (u_relief > 0.0) n = relief_normal(n, shown_height(ink_height(texel.a)));
     float fresnel = u_shading == 1 ? 0.0 : mix(coat_fresnel(dot(n, to_eye)), 0.02, smoothstep(0.4, 0.8, u_roughness));
     vec3 light = (1.0 - fresnel) * base * irradiance(n);
-    // Ink hides by exp(-4) per film unit of 2.5 micrometres. The alpha is that of premultiplied colour.
-    float passes = u_transmission > 0.0 ? u_transmission * (1.0 - fresnel) * exp(-ink_height(texel.a) / 0.625) : 0.0;
-    light *= 1.0 - passes;
-    if (fresnel > 0.0) light += fresnel * surroundings(reflect(-to_eye, n), u_transmission > 0.0 ? 0.05 : u_roughness);
+    vec3 mirrored = vec3(0.0);
+    if (fresnel > 0.0) mirrored = fresnel * surroundings(reflect(-to_eye, n), u_transmission > 0.0 ? 0.05 : u_roughness);
+    light += mirrored;
+    float passes = 0.0;
+    if (u_transmission > 0.0) {
+        // Ink hides by exp(-4) per film unit of 2.5 micrometres. What is mirrored covers what is behind.
+        float bright = clamp(max(mirrored.r, max(mirrored.g, mirrored.b)), 0.0, 1.0);
+        passes = u_transmission * (1.0 - bright) * exp(-ink_height(texel.a) / 0.625);
+    }
     f_colour = vec4(encode_srgb(light), 1.0 - passes);
 }

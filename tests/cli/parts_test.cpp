@@ -17,12 +17,11 @@ class PartsOfAProject : public Program {
         write("m.obj",
               "o body\nv -30 -30 0\nv 30 -30 0\nv 30 30 0\nv -30 30 0\nf 1 2 3 4\n"
               "o pane\nv -30 -30 4\nv 30 -30 4\nv 30 30 4\nv -30 30 4\nf 5 6 7 8\n");
-        write("s.inkml", stroke_file());
+        write("s.inkml", stroke_file("0 0 4"));
     }
     Ran paint(const std::string& more) {
-        return tuft("paint " + path("m.obj") + " --unit mm --up z --strokes " + path("s.inkml") +
-                    " --place 0,0,4 --mapping project --atlas-size 512 --project " + path("p.tuft") + " --json " +
-                    more);
+        return tuft("paint " + path("m.obj") + " --unit mm --up z --sides file --strokes " + path("s.inkml") +
+                    " --mapping project --atlas-size 512 --project " + path("p.tuft") + " --json " + more);
     }
     // Film units of ink on the surface at a height.
     double ink_at(const std::string& z) {
@@ -30,7 +29,7 @@ class PartsOfAProject : public Program {
         EXPECT_EQ(ran.status, 0) << ran.err;
         const json j = json::parse(ran.out);
         double sum = 0;
-        for (const auto& [pigment, amount] : j["amounts"].items()) sum += amount.get<double>();
+        for (const auto& [pigment, amount] : j["film"].items()) sum += amount.get<double>();
         return sum;
     }
     json parts(const std::string& more) {
@@ -70,8 +69,7 @@ TEST_F(PartsOfAProject, LockedOnesGetNoInkAndOnlyLeavesTheOthersOut) {
     ASSERT_EQ(paint("--lock-parts pane").status, 0);
     EXPECT_EQ(ink_at("4"), 0);
     const std::string before = replayed();
-    ASSERT_EQ(tuft("paint " + path("p.tuft") + " --strokes " + path("s.inkml") +
-                   " --place 0,0,0 --mapping project --only-parts body")
+    ASSERT_EQ(tuft("paint " + path("p.tuft") + " --strokes " + path("s.inkml") + " --mapping project --only-parts body")
                   .status,
               0);
     EXPECT_GT(ink_at("0"), 0);

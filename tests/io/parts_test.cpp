@@ -419,7 +419,6 @@ TEST(PartsOfObj, StayWithTheStatementsOfTheirMaterials) {
 
 // A part made of glass here lets light pass where there is no ink, under its name; the file's own glass stays as it is.
 TEST_F(Parts, OfGlassKeepTheirNamesAndGetATransmissionMap) {
-    put(folder / "truck.glb", truck_glb());
     const stroke::Model model = model_of(read_model(folder / "truck.glb"));
     stroke::Document painting(model);
     const std::vector<std::string> names = stroke::part_names(*model.mesh);
@@ -442,10 +441,11 @@ TEST_F(Parts, OfGlassKeepTheirNamesAndGetATransmissionMap) {
         export_model(folder / file, *model.mesh, model.atlas, maps, options);
         const mesh::PolygonSoup again = read_model(folder / file);
         for (const char* object : {"Body", "Wheel left", "Wheel right", "Flag"})
-            EXPECT_THAT(again.scene->parts, Contains(Field(&mesh::ScenePart::object, object)));
+            EXPECT_THAT(again.scene->parts, Contains(::testing::Field(&mesh::ScenePart::object, object)));
     }
     const json j = glb_json(folder / "out.glb");
-    EXPECT_THAT(names_in(j["nodes"]), IsSupersetOf({"Truck", "Body", "Axle", "Wheel left", "Wheel right", "Flag"}));
+    EXPECT_THAT(names_in(j["nodes"]),
+                ::testing::IsSupersetOf({"Truck", "Body", "Axle", "Wheel left", "Wheel right", "Flag"}));
     EXPECT_THAT(j["extensionsUsed"], Contains("KHR_materials_transmission"));
     const json& glass = material_named(j, "decorated.glass");
     const json& transmission = glass["extensions"]["KHR_materials_transmission"];
@@ -459,10 +459,10 @@ TEST_F(Parts, OfGlassKeepTheirNamesAndGetATransmissionMap) {
     EXPECT_EQ(own["extensions"]["KHR_materials_transmission"]["transmissionFactor"], 0.5);
     // The map is that of bare glass on the body, 0.9, and 0 elsewhere.
     std::set<int> values(maps.transmission.texels.begin(), maps.transmission.texels.end());
-    EXPECT_THAT(values, IsSupersetOf({0, 230}));
-    EXPECT_THAT(texts(export_model(folder / "out.obj", *model.mesh, model.atlas, maps, options)),
+    EXPECT_THAT(values, ::testing::IsSupersetOf({0, 230}));
+    EXPECT_THAT(texts(export_model(folder / "plain.obj", *model.mesh, model.atlas, maps, options)),
                 Contains(HasSubstr("are of glass; this format has no map of it")));
-    EXPECT_FALSE(fs::exists(folder / "out_transmission.png"));
+    EXPECT_FALSE(fs::exists(folder / "plain_transmission.png"));
 }
 
 // Groups of colours, and projects made before scenes were kept.

@@ -212,8 +212,9 @@ TEST(Parts, EachHasItsSubstrate) {
         const ink::Plane* w = d.layers().canvas().plane(slot, 0);
         if (!w || d.parts().substrates()->of_texel.contains(slot)) continue;
         for (int t = 0; t < atlas::kTileTexels; ++t)
-            if (model().texels.tiles[slot].cluster[t] != atlas::kNoCluster)
+            if (model().texels.tiles[slot].cluster[t] != atlas::kNoCluster) {
                 ASSERT_NEAR((*w)[t], trim.coverage(slot, t) ? clay.capacity : porcelain.capacity, 1e-5);
+            }
     }
     d.appearance().preview_substrate(ink::load_substrate("bisque"));
     EXPECT_EQ(d.appearance().stack().substrates, nullptr);

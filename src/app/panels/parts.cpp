@@ -31,7 +31,7 @@ Names with_chosen(const PartParts& s, const std::string& name) {
     return {s.parts.chosen.begin(), s.parts.chosen.end()};
 }
 
-bool icon_button(const PartParts& s, const std::string& name, Icon icon, unsigned colour, const char* hint) {
+bool icon_switch(const PartParts& s, const std::string& name, Icon icon, unsigned colour, const char* hint) {
     const float side = s.ui.px(kRowHeight - 4);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::PushID(name.c_str());
@@ -80,11 +80,11 @@ void row(const PartParts& s, const std::string& name) {
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(ui.px(3), ui.px(2)));
     ImGui::BeginDisabled(!writes);
     const Names names = with_chosen(s, name);
-    if (icon_button(s, "show part " + name, part.hidden ? Icon::closed_eye : Icon::eye,
+    if (icon_switch(s, "show part " + name, part.hidden ? Icon::closed_eye : Icon::eye,
                     part.hidden ? ui.faint : ui.strong, "Hidden parts are as if they were not there"))
         change(s, stroke::hidden_parts(table_of(s), names, !part.hidden));
     ImGui::SameLine();
-    if (icon_button(s, "lock part " + name, part.locked ? Icon::lock : Icon::open_lock,
+    if (icon_switch(s, "lock part " + name, part.locked ? Icon::lock : Icon::open_lock,
                     part.locked ? ui.strong : ui.faint, "Locked parts are touched and get no ink"))
         change(s, stroke::locked_parts(table_of(s), names, !part.locked));
     ImGui::EndDisabled();

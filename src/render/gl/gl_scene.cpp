@@ -364,7 +364,7 @@ void GlScene::draw_glass(std::span<const VisibleCluster> seen, const DrawOptions
     const GLint at = glGetUniformLocation(s.mesh_program, "u_transmission");
     if (lit) {
         glEnable(GL_BLEND);
-        glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+        glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
         glDepthMask(GL_FALSE);
     }
     for (auto one = seen.rbegin(); one != seen.rend(); ++one) {
