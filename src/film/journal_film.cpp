@@ -172,7 +172,7 @@ class Camera {
         render::PictureOptions options = options_;
         options.edge_samples = 4;
         options.light_samples = 16;
-        options.light_step = 2;
+        options.light_step = std::clamp(options.height / kLightRows, 1, kMostLightStep);
         if (!moving_ || paint_is_far())
             find_light(moving_, options, render::PictureSeries::Length::moving);
         else
@@ -182,6 +182,8 @@ class Camera {
     }
 
     static constexpr double kMoment = 1e-3;  // of the film
+    static constexpr int kLightRows = 360;   // at which light is sampled in a frame, about
+    static constexpr int kMostLightStep = 8;
 
     const FilmOptions& film_;
     stroke::Document& painting_;

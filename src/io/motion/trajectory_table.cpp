@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::array kNumbers{"t_s", "x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz"};
 constexpr const char *kKind = "kind", *kStroke = "stroke", *kPaint = "stroke_json";
+constexpr const char* kNeeded = "t_s, x_mm, y_mm, z_mm, qw, qx, qy, qz";
 constexpr double kMostStrokes = 1e6;
 
 std::string quoted(const std::string& text) {
@@ -100,8 +101,8 @@ struct Columns {
         for (std::size_t i = 0; i < kNumbers.size(); ++i) {
             const auto at = find(kNumbers[i]);
             if (!at)
-                throw Error(Message("has no column '{}'; a trajectory has {}", std::string(kNumbers[i]),
-                                    "t_s, x_mm, y_mm, z_mm, qw, qx, qy, qz"));
+                throw Error(
+                    Message("has no column '{}'; a trajectory has {}", std::string(kNumbers[i]), std::string(kNeeded)));
             numbers[i] = *at;
         }
         kind = find(kKind);
@@ -194,7 +195,7 @@ std::vector<stroke::RecordedStroke> parse_trajectory_csv(std::string_view text, 
     CsvReader reader(text);
     try {
         std::vector<std::string> cells;
-        if (!reader.next(cells)) throw Error("is empty");
+        if (!reader.next(cells)) throw Error("the file is empty");
         const Columns columns(cells);
         TableStrokes strokes(columns);
         while (reader.next(cells))
