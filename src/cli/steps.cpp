@@ -278,14 +278,8 @@ render::Image draw_picture(const PictureRequest& request, Console& console) {
     options.progress = console.progress();
     if (count > 1) options = render::turntable_frame(options, frame, count);
     if (!painting) return render::render_picture(*model.mesh, *model.query, look.appearance, options);
-    render::Glass glass{.triangles = {},
-                        .hidden = painting->parts().hidden_triangles(),
-                        .size = look.transmission.size,
-                        .transmission = look.transmission.texels};
-    const ink::Substrate& substrate = painting->appearance().substrate();
-    if (!glass.transmission.empty())
-        for (const float part : painting->parts().transmission(substrate)) glass.triangles.push_back(part > 0);
-    return render::render_with_glass(*model.mesh, *painting->parts().surface(), look.appearance, glass, options);
+    return render::render_with_glass(*model.mesh, *painting->parts().surface(), look.appearance,
+                                     film::glass_of(look, *painting), options);
 }
 
 void check_outputs(const Outputs& o) {

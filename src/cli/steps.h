@@ -12,7 +12,6 @@
 #include "film/picture_look.h"
 #include "io/model/read_import.h"
 #include "io/project/project.h"
-#include "render/picture/glass.h"
 #include "render/picture/picture.h"
 #include "stroke/document/document.h"
 #include "stroke/journal/entries.h"

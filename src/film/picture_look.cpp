@@ -18,7 +18,7 @@ PictureLook make_look(const stroke::Model& model, const stroke::Document* painti
     ink::Stack stack = painting ? painting->appearance().stack() : bare;
     if (!material.empty()) stack.substrates = nullptr;
     appearance.vertex_colours = false;
-    if (!stack.layers.empty() || stack.has_base_colour() || stack.substrates) {
+    if (!stack.layers.empty() || stack.has_base_colour() || stack.substrates || substrate.transmission > 0) {
         const ink::ComposeOptions compose = painting ? painting->appearance().compose_options() : ink::ComposeOptions{};
         look.colour = ink::compose_linear(stack, model.texels, substrate, compose);
         if (raking) {
@@ -33,6 +33,17 @@ PictureLook make_look(const stroke::Model& model, const stroke::Document* painti
         look.point_to_maps(model);
     }
     return look;
+}
+
+render::Glass glass_of(const PictureLook& look, const stroke::Document& painting) {
+    render::Glass glass{.triangles = {},
+                        .hidden = painting.parts().hidden_triangles(),
+                        .size = look.transmission.size,
+                        .transmission = look.transmission.texels};
+    if (!glass.transmission.empty())
+        for (const float part : painting.parts().transmission(painting.appearance().substrate()))
+            glass.triangles.push_back(part > 0);
+    return glass;
 }
 
 void PictureLook::point_to_maps(const stroke::Model& model) {

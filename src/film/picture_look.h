@@ -1,5 +1,6 @@
 #pragma once
 
+#include "render/picture/glass.h"
 #include "render/picture/picture.h"
 #include "stroke/document/document.h"
 
@@ -22,5 +23,7 @@ struct PictureLook {
 /// `material`: of the whole bare surface; empty: the painting's and its parts', else porcelain.
 PictureLook make_look(const stroke::Model& model, const stroke::Document* painting, const std::string& material,
                       bool raking);
+/// Returns which triangles are of glass or hidden. `look` must outlive it.
+render::Glass glass_of(const PictureLook& look, const stroke::Document& painting);
 
 }  // namespace tuft::film

@@ -1,11 +1,11 @@
 #include "app/paint/export_command.h"
 
+#include "film/picture_look.h"
 #include "io/export/export.h"
 #include "io/export/export_maps.h"
 #include "io/image/image.h"
 #include "io/strokes/inkml.h"
 #include "render/picture/glass.h"
-#include "render/picture/picture.h"
 #include "stroke/journal/recorded_journal.h"
 
 namespace fs = std::filesystem;
@@ -41,31 +41,8 @@ void export_strokes(PaintContext& context, const std::filesystem::path& path) {
 
 void draw_pictures(PaintContext& context, const ExportModel& command, const stroke::Document& painting) {
     const stroke::Model& m = painting.model();
-    const ink::Substrate& substrate = painting.appearance().substrate();
-    const ink::AtlasMap<float> colour = ink::compose_linear(painting.appearance().stack(), m.texels, substrate,
-                                                            painting.appearance().compose_options());
-    render::Appearance appearance;
-    appearance.finish = substrate.roughness > 0.45f ? render::Finish::clay : render::Finish::porcelain;
-    appearance.body_colour = Vec3f(substrate.reflectance[0], substrate.reflectance[1], substrate.reflectance[2]);
-    appearance.maps.size = colour.size;
-    appearance.maps.corner_uvs = m.atlas.corner_uvs;
-    appearance.maps.base_colour =
-        std::span(reinterpret_cast<const Vec3f*>(colour.texels.data()), std::size_t{colour.size} * colour.size);
-    const ink::Stack stack = painting.appearance().stack();
-    const ink::ComposeOptions compose = painting.appearance().compose_options();
-    ink::AtlasMap<float> roughness;
-    if (stack.substrates) {
-        appearance.finish = render::Finish::porcelain;
-        roughness = ink::compose_roughness(stack, m.texels, substrate, compose);
-        appearance.maps.roughness = roughness.texels;
-    }
-    const ink::AtlasMap<std::uint8_t> transmission = ink::compose_transmission8(stack, m.texels, substrate, compose);
-    render::Glass glass{.triangles = {},
-                        .hidden = painting.parts().hidden_triangles(),
-                        .size = transmission.size,
-                        .transmission = transmission.texels};
-    if (!transmission.texels.empty())
-        for (const float part : painting.parts().transmission(substrate)) glass.triangles.push_back(part > 0);
+    const film::PictureLook look = film::make_look(m, &painting, "", false);
+    const render::Glass glass = film::glass_of(look, painting);
     for (int i = 0; i < command.pictures; ++i) {
         render::PictureOptions options;
         options.width = command.picture_width;
@@ -78,7 +55,7 @@ void draw_pictures(PaintContext& context, const ExportModel& command, const stro
         };
         if (command.pictures > 1) options = render::turntable_frame(options, i, command.pictures);
         const render::Image image =
-            render::render_with_glass(*m.mesh, *painting.parts().surface(), appearance, glass, options);
+            render::render_with_glass(*m.mesh, *painting.parts().surface(), look.appearance, glass, options);
         char number[16] = "";
         if (command.pictures > 1) std::snprintf(number, sizeof number, "-%03d", i);
         std::filesystem::path file = command.path;
