@@ -42,7 +42,7 @@ io/font io/image render/brush render/gl
 io/model io/motion render/picture
 io/export io/project io/strokes
 io/sheet
-film
+pictures
 writer/glyphs
 writer/gesture
 writer/copy writer/fit writer/layout

@@ -8,7 +8,7 @@
 #include "cli/revision.h"
 #include "cli/steps.h"
 #include "core/error.h"
-#include "film/journal_film.h"
+#include "pictures/journal_film.h"
 #include "io/image/film_file.h"
 #include "io/project/appearance.h"
 #include "io/project/restore.h"
@@ -17,7 +17,7 @@
 namespace tuft::cli {
 namespace {
 
-film::FilmOptions film_options(const Film& a, const stroke::Model& model, Console& console) {
+pictures::FilmOptions film_options(const Film& a, const stroke::Model& model, Console& console) {
     return {.seconds = a.seconds,
             .speed = a.speed,
             .frames_per_second = a.frames_per_second,
@@ -28,7 +28,7 @@ film::FilmOptions film_options(const Film& a, const stroke::Model& model, Consol
             .progress = console.progress()};
 }
 
-void print_result(const Film& a, const film::FilmLength& length) {
+void print_result(const Film& a, const pictures::FilmLength& length) {
     if (a.common.json)
         print_json(nlohmann::json{{"project", a.replay.project.string()},
                                   {"wrote", a.output.string()},
@@ -55,12 +55,12 @@ int run(const Film& a) {
     io::use_presets(project->file, painting);
     io::apply_recolouring(project->file, painting);
     std::vector<stroke::JournalEntry> entries = replay_strokes(a.replay, *project, painting).followed;
-    const film::FilmOptions options = film_options(a, model, console);
-    const film::FilmLength length = film::measure_film(entries, options);
+    const pictures::FilmOptions options = film_options(a, model, console);
+    const pictures::FilmLength length = pictures::measure_film(entries, options);
     io::write_film(
         a.output,
         {.width = a.replay.view.width, .height = a.replay.view.height, .frames_per_second = a.frames_per_second},
-        [&](io::FilmSink& sink) { film::film_journal(painting, std::move(entries), options, sink); });
+        [&](io::FilmSink& sink) { pictures::film_journal(painting, std::move(entries), options, sink); });
     console.clear();
     print_result(a, length);
     return 0;

@@ -9,7 +9,7 @@
 
 #include "cli/arguments.h"
 #include "cli/console.h"
-#include "film/picture_look.h"
+#include "pictures/picture_look.h"
 #include "io/model/read_import.h"
 #include "io/project/project.h"
 #include "render/picture/picture.h"

@@ -1,6 +1,6 @@
 #include "app/paint/export_command.h"
 
-#include "film/picture_look.h"
+#include "pictures/picture_look.h"
 #include "io/export/export.h"
 #include "io/export/export_maps.h"
 #include "io/image/image.h"
@@ -41,8 +41,8 @@ void export_strokes(PaintContext& context, const std::filesystem::path& path) {
 
 void draw_pictures(PaintContext& context, const ExportModel& command, const stroke::Document& painting) {
     const stroke::Model& m = painting.model();
-    const film::PictureLook look = film::make_look(m, &painting, "", false);
-    const render::Glass glass = film::glass_of(look, painting);
+    const pictures::PictureLook look = pictures::make_look(m, &painting, "", false);
+    const render::Glass glass = pictures::glass_of(look, painting);
     for (int i = 0; i < command.pictures; ++i) {
         render::PictureOptions options;
         options.width = command.picture_width;

@@ -23,7 +23,7 @@ void export_film(PaintContext& context, ExportFilm command) {
     command.film.progress = context.progress("Filming");
     command.film.progress("film", 0);
     const std::vector<stroke::JournalEntry>& entries = context.work.document->journal().entries();
-    film::measure_film(entries, command.film);
+    pictures::measure_film(entries, command.film);
     io::check_film(command.path);
     stroke::Document painting(*context.work.model);
     context.take_presets(painting, {});
@@ -31,7 +31,7 @@ void export_film(PaintContext& context, ExportFilm command) {
                                 .height = command.film.picture.height,
                                 .frames_per_second = command.film.frames_per_second};
     io::write_film(command.path, format,
-                   [&](io::FilmSink& sink) { film::film_journal(painting, entries, command.film, sink); });
+                   [&](io::FilmSink& sink) { pictures::film_journal(painting, entries, command.film, sink); });
     context.outbox.report(Message("Exported {}", command.path.string()));
     context.publisher.publish();
 }

@@ -82,7 +82,7 @@ void frame_rows_of_film(Ui& ui, FilmSettings& c) {
 
 ExportFilm film_command(const FilmSettings& c, const Orbit& seen_from, const std::filesystem::path& path) {
     ExportFilm command{path, {}};
-    film::FilmOptions& film = command.film;
+    pictures::FilmOptions& film = command.film;
     film.seconds = c.seconds;
     film.speed = c.by_speed ? c.speed : 0;
     film.frames_per_second = c.frames_per_second;

@@ -9,7 +9,7 @@
 
 #include "app/document/writing.h"
 #include "brush/tuft/tuft.h"
-#include "film/journal_film.h"
+#include "pictures/journal_film.h"
 #include "io/project/attachments.h"
 #include "io/sheet/painted_sheet.h"
 #include "render/gl/gl_camera.h"
@@ -133,7 +133,7 @@ struct ExportSheets {
 /// Paints the journal again on a second document and films it. The film's progress is the paint thread's.
 struct ExportFilm {
     std::filesystem::path path;  ///< .mp4, .gif, or a folder of frames
-    film::FilmOptions film;
+    pictures::FilmOptions film;
 };
 /// p → to + rotation (p − from)
 struct RigidMove {

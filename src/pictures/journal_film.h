@@ -10,7 +10,7 @@
 /// \file
 /// A journal painted again before a camera, as a time-lapse with the bent tuft in it. Called by `tuft film` and by the
 /// studio. Any thread that has the document.
-namespace tuft::film {
+namespace tuft::pictures {
 
 /// What is filmed, and how.
 struct FilmOptions {
@@ -40,4 +40,4 @@ FilmLength measure_film(const std::vector<stroke::JournalEntry>& entries, const 
 void film_journal(stroke::Document& painting, std::vector<stroke::JournalEntry> entries, const FilmOptions& options,
                   io::FilmSink& sink);
 
-}  // namespace tuft::film
+}  // namespace tuft::pictures

@@ -1,8 +1,8 @@
-#include "film/picture_look.h"
+#include "pictures/picture_look.h"
 
 #include "ink/composite/composite.h"
 
-namespace tuft::film {
+namespace tuft::pictures {
 
 PictureLook make_look(const stroke::Model& model, const stroke::Document* painting, const std::string& material,
                       bool raking) {
@@ -55,4 +55,4 @@ void PictureLook::point_to_maps(const stroke::Model& model) {
     appearance.maps.roughness = roughness.texels;
 }
 
-}  // namespace tuft::film
+}  // namespace tuft::pictures

@@ -1,4 +1,4 @@
-#include "film/journal_film.h"
+#include "pictures/journal_film.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,13 +6,13 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "film/picture_look.h"
+#include "pictures/picture_look.h"
 #include "ink/composite/composite.h"
 #include "render/picture/brush_in_picture.h"
 #include "render/picture/picture_series.h"
 #include "stroke/session/session.h"
 
-namespace tuft::film {
+namespace tuft::pictures {
 namespace {
 
 constexpr double kHolder = 5;  ///< length of the drawn holder over that of the tuft
@@ -258,4 +258,4 @@ void film_journal(stroke::Document& painting, std::vector<stroke::JournalEntry> 
     shoot(std::move(entries), timeline, painting, camera, sink);
 }
 
-}  // namespace tuft::film
+}  // namespace tuft::pictures

@@ -7,7 +7,7 @@
 /// \file
 /// A painted model as product pictures show it. Called by the commands and the studio. Any thread that has the
 /// document.
-namespace tuft::film {
+namespace tuft::pictures {
 
 /// Surface of a model as a picture shows it, with its maps.
 struct PictureLook {
@@ -26,4 +26,4 @@ PictureLook make_look(const stroke::Model& model, const stroke::Document* painti
 /// Returns which triangles are of glass or hidden. `look` must outlive it.
 render::Glass glass_of(const PictureLook& look, const stroke::Document& painting);
 
-}  // namespace tuft::film
+}  // namespace tuft::pictures
