@@ -38,9 +38,9 @@ std::vector<Vec3> broad_axes(const rod::Memory& m, std::span<const Vec3> t) {
 
 namespace {
 
-/// By so much turned about the hair the last direction decides which way a section goes on: a hand that moves exactly
-/// along its holder's x or y would leave the choice to rounding.
-constexpr double kAside = 0.02;
+/// Cosine below which directions count as perpendicular: a hand that moves exactly along its holder's x leaves the sign
+/// to rounding, and with it on which side which hair comes to lie.
+constexpr double kPerpendicular = 1e-4;
 
 struct Wide {
     std::size_t node = 0;
@@ -79,8 +79,7 @@ Wide wide_axis(const SectionInput& in, const std::vector<Vec3>& t) {
     e = glm::normalize(e);
     Vec3 at_node = kept;
     for (std::size_t i = 0; i < best.node; ++i) at_node = parallel_transport(at_node, t[i], t[i + 1]);
-    at_node += kAside * glm::cross(t[best.node], at_node);
-    if (glm::dot(at_node, e) < 0) e = -e;
+    if (glm::dot(at_node, e) < -kPerpendicular) e = -e;
     return best;
 }
 
