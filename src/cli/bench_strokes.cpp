@@ -259,11 +259,11 @@ double first_ink_milliseconds(const stroke::Model& model, int texels) {
     return quantile_of(runs, 0.5);
 }
 
-double hand_seconds(const stroke::Model& model, const stroke::PaintStroke& stroke) {
+double hand_seconds(const stroke::Model& model, const Drag& drag) {
     constexpr std::size_t kAtOnce = 17;  // of a thousand a second
     stroke::Document painting(model);
-    painting.use(dragged_brush(model, {}));
-    stroke::PaintStroke begun = stroke;
+    painting.use(dragged_brush(model, drag));
+    stroke::PaintStroke begun = dragged(model, drag);
     const std::vector<brush::Pose> poses = stroke::spatial_poses(begun.trace);
     begun.trace.samples.clear();
     painting.begin(begun);

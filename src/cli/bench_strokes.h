@@ -63,6 +63,6 @@ double first_ink_milliseconds(const stroke::Model& model, int texels);
 
 /// How long the ink of a hand that paints is behind it: wall time from samples, which come as many at once as a screen
 /// shows in a sixtieth of a second, to all of their ink on the texels. Median of a stroke.
-double hand_seconds(const stroke::Model& model, const stroke::PaintStroke& stroke);
+double hand_seconds(const stroke::Model& model, const Drag& drag);
 
 }  // namespace tuft::cli

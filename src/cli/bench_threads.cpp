@@ -158,7 +158,7 @@ nlohmann::json measure_threads(const Bench& a, Console& console) {
                                  {"replay", [&] { return strokes.replay(); }},
                                  {"paint_many", [&] { return many.paint(); }},
                                  {"wet_strokes", [&] { return wet.paint(); }},
-                                 {"hand", [&] { return hand_seconds(m.model, dragged(m.model, {})); }},
+                                 {"hand", [&] { return hand_seconds(m.model, {}); }},
                                  {"film_step", wet_atlas(m.model)}},
                                 counts, a.seconds, console);
     set_thread_count(1);
