@@ -60,13 +60,14 @@ TEST_F(FilmCommand, LeavesNoHalfFilm) {
     write("ffmpeg", "#!/bin/sh\nhead -c 1000 >/dev/null\nexit 3\n");
     ::chmod(path("ffmpeg").c_str(), 0755);
     const std::size_t before = files();
-    const std::string film = "film " + p + kView + "-o " + path("f.mp4");
+    const std::string film = "film " + p + kView + "--no-cache -o " + path("f.mp4");
     const Ran failed = tuft(film, "PATH='" + folder_.string() + ":$PATH'");
     EXPECT_EQ(failed.status, 1);
     EXPECT_EQ(failed.error_lines(), 1) << failed.err;
     const Ran stopped = tuft(film + " --seconds 600", "timeout -s INT 2");
     EXPECT_NE(stopped.status, 0);
-    const Ran frames = tuft("film " + p + kView + "-o " + path("frames") + " --seconds 600", "timeout -s INT 2");
+    const Ran frames =
+        tuft("film " + p + kView + "--no-cache -o " + path("frames") + " --seconds 600", "timeout -s INT 2");
     EXPECT_NE(frames.status, 0);
     const Ran none = tuft(film, "PATH=/nonexistent");
     EXPECT_EQ(none.status, 1);
