@@ -305,29 +305,6 @@ TEST(WideOutline, AnEdgeThatLeapsMarksAllThatItPassesOver) {
     }
 }
 
-/// The lower edge of a tilted flat touches first, and as it comes down the patch grows over the hair between the
-/// spines: of a rigid edge at the angle θ by dδ / sin θ, which bending only makes less.
-TEST(WideOutline, ATiltedEdgeComesDownWithoutSteps) {
-    constexpr double kTilt = 0.15, kStep = 1e-5;
-    const brush::Preset p = brush::load_preset("flat-12");
-    brush::Tuft tuft = brush::make_tuft(p, 5);
-    const brush::ContactPlane plane;
-    const double edge = 0.5 * p.width * std::sin(kTilt);
-    double before = 0, grown = 0;
-    for (int i = 0; i <= 240; ++i) {
-        brush::Pose pose;
-        pose.rotation = glm::angleAxis(kTilt, Vec3{0, 1, 0});
-        pose.position = {0, 0, p.length * std::cos(kTilt) + edge - kStep * i};
-        const brush::TuftState state = brush::step(tuft, pose, std::span(&plane, 1), 1e-3);
-        const double width = extent_of(outlines_of(state, kFlat, {}, {.film = 1e-4})).width();
-        if (before > 0) grown = std::max(grown, width - before);
-        before = std::max(width, 0.0);
-    }
-    EXPECT_GT(before, 0.8 * p.width);
-    // A spine is 2.4 mm wide. The rigid edge would gain 0.07 mm a step; hair that falls over gains more at once.
-    EXPECT_LT(grown, 0.25 * p.width / p.spines);
-}
-
 /// A trail of a spine that lies along x, `b` thick, its broad side along y.
 Trail lying_trail(int branch, const Vec2& at, double a, double b) {
     Trail trail{.branch = branch, .strip = true};

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
-#include <utility>
 
 #include "atlas/texels/log_map.h"
 
@@ -101,21 +99,6 @@ class BranchSurface {
         const std::size_t i = std::min(static_cast<std::size_t>(std::max(s, 0.0)), from_tip_.size() - 1);
         if (i + 1 >= from_tip_.size()) return from_tip_.back();
         return from_tip_[i] + (s - double(i)) * (from_tip_[i + 1] - from_tip_[i]);
-    }
-
-    /// Parameter where the part of the hair between the tip and a place is `part`, 0–1.
-    double at_part(double part) const {
-        const double wanted = part * from_tip_.back();
-        std::size_t i = cap_;
-        while (i + 2 < from_tip_.size() && from_tip_[i + 1] < wanted) ++i;
-        const double run = from_tip_[i + 1] - from_tip_[i];
-        return double(i) + (run > 0 ? std::clamp((wanted - from_tip_[i]) / run, 0.0, 1.0) : 0);
-    }
-    /// Parameter on `other` that faces s: its cap, or the same part of its hair.
-    double facing(double s, const BranchSurface& other) const {
-        const double cap = double(cap_), length = from_tip_.back();
-        if (s <= cap) return cap > 0 ? s / cap * double(other.cap_) : double(other.cap_);
-        return other.at_part(length > 0 ? from_tip(s) / length : 0);
     }
 
     double end() const { return nodes_.empty() ? 0 : double(nodes_.size() - 1); }
@@ -290,172 +273,41 @@ std::vector<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<cons
     return dealt;
 }
 
-namespace {
-
-/// Surfaces of the branches of a tuft, and what they need to become trails.
-struct Surfaces {
-    const brush::TuftState& tuft;
-    double length = 0;                                  // metres, of the tuft
-    std::vector<std::optional<BranchSurface>> of = {};  // [branches]; none of a branch without two sections
-    std::vector<double> whole = {};                     // [branches] length of its hair over the tuft's
-
-    Trail trail_of(std::size_t k) const {
-        return {.branch = static_cast<int>(k),
-                .cuts = {},
-                .along = {},
-                .length = whole[k],
-                .strip = tuft.strips,
-                .corners = tuft.branches[k].strip};
-    }
-    double along(std::size_t k, double s) const { return length > 0 ? whole[k] - of[k]->from_tip(s) / length : 0; }
-};
-
-/// The f-th of the places that a stretch is cut at, close together at both ends, 0–1.
-double place_of_sample(int i) {
-    return 0.5 - 0.5 * std::cos(kPi * i / (kSamples - 1));
-}
-
-/// Cuts a stretch of a branch.
-Trail trail_of(const Surfaces& all, std::size_t k, const Stretch& stretch) {
-    const brush::TuftState& tuft = all.tuft;
-    const BranchSurface& surface = *all.of[k];
-    const std::size_t count = tuft.branches.size();
-    // The middle one of several branches goes on as the trunk.
-    const bool carries = count > 1 && k == count / 2 && !tuft.wide;
-    const double trunk = carries ? surface.at_section(tuft.branches[0].sections.size() - 1) : 1e9;
-    Trail trail = all.trail_of(k);
-    for (const brush::Opening& opening : tuft.openings)
-        if (opening.first == trail.branch) trail.openings.push_back({opening.second, {}});
-    for (int i = 0; i < kSamples; ++i) {
-        const double s = stretch.begin + place_of_sample(i) * (stretch.end - stretch.begin);
-        trail.cuts.push_back(surface.at(s));
-        trail.along.push_back(all.along(k, s));
-        if (s < trunk) trail.trunk = trail.cuts.size();
-        std::size_t next = 0;
-        for (const brush::Opening& opening : tuft.openings)
-            if (opening.first == trail.branch)
-                trail.openings[next++].width.push_back(surface.value_at(s, opening.width));
-    }
-    return trail;
-}
-
-/// The strip at the part f of the way between two, which may be flattened along different axes: linear in both of its
-/// half-widths as vectors, which are semi-diameters of its ellipse, conjugate if not orthogonal.
-Cut strip_between(const Cut& p, const Cut& q, double f) {
-    const auto broad = [](const Cut& c) { return c.turn.x * c.a * c.e + c.turn.y * c.b * c.m; };
-    const auto thick = [](const Cut& c) { return c.turn.x * c.b * c.m - c.turn.y * c.a * c.e; };
-    const Vec3 e = glm::mix(broad(p), broad(q), f), m = glm::mix(thick(p), thick(q), f);
-    Cut out{.centre = glm::mix(p.centre, q.centre, f),
-            .z = std::lerp(p.z, q.z, f),
-            .a = glm::length(e),
-            .b = glm::length(m)};
-    out.e = out.a > 1e-9 ? e / out.a : p.e;
-    out.m = out.b > 1e-9 ? m / out.b : p.m;
-    return out;
-}
-
-/// Hair between a branch that touches over a stretch and a neighbour off the surface.
-class HairBetween {
-  public:
-    HairBetween(const Surfaces& all, std::size_t on, std::size_t off, const Stretch& stretch)
-        : all_(all), on_(on), off_(off), stretch_(stretch) {
-        for (int i = 0; i < kLooked; ++i) {
-            const double s = place(i);
-            looked_.push_back({all.of[on]->at(s), off_at(s)});
-        }
-    }
-
-    /// Returns the trail of the hair that is furthest from the branch that touches, or none where that is its own.
-    std::optional<Trail> last_that_touches(const brush::Opening& opening) const {
-        constexpr int kHalvings = 12;
-        double least = 0, most = 1;
-        for (int i = 0; i < kHalvings; ++i) {
-            const double middle = 0.5 * (least + most);
-            (overlap_of(deepest(middle), middle) >= 0 ? least : most) = middle;
-        }
-        if (!(least > kLeastPart)) return std::nullopt;
-        const Stretch touching{meeting(least, stretch_.begin), meeting(least, stretch_.end)};
-        const bool first = opening.first == static_cast<int>(off_);
-        Trail trail = all_.trail_of(off_);
-        trail.between = true;
-        trail.trunk = kSamples;
-        trail.length = std::lerp(all_.whole[on_], all_.whole[off_], least);
-        if (first) trail.openings.push_back({opening.second, {}});
-        for (int i = 0; i < kSamples; ++i) {
-            const double s = touching.begin + place_of_sample(i) * (touching.end - touching.begin);
-            const double facing = all_.of[on_]->facing(s, *all_.of[off_]);
-            trail.cuts.push_back(strip_between(all_.of[on_]->at(s), all_.of[off_]->at(facing), least));
-            trail.cuts.back().a *= least;
-            trail.along.push_back(std::lerp(all_.along(on_, s), all_.along(off_, facing), least));
-            if (first) trail.openings.back().width.push_back(all_.of[off_]->value_at(facing, opening.width));
-        }
-        return trail;
-    }
-
-  private:
-    static constexpr int kLooked = 9;           // places of a stretch
-    static constexpr double kLeastPart = 1e-3;  // of the distance between the spines
-
-    double place(int i) const { return std::lerp(stretch_.begin, stretch_.end, double(i) / (kLooked - 1)); }
-    Cut off_at(double s) const { return all_.of[off_]->at(all_.of[on_]->facing(s, *all_.of[off_])); }
-    double overlap_of(int i, double part) const {
-        return strip_between(looked_[i].first, looked_[i].second, part).overlap();
-    }
-    int deepest(double part) const {
-        int best = 0;
-        for (int i = 1; i < kLooked; ++i)
-            if (overlap_of(i, part) > overlap_of(best, part)) best = i;
-        return best;
-    }
-    /// Where it leaves the surface between its deepest place and an end of the stretch.
-    double meeting(double part, double end) const {
-        constexpr int kHalvings = 12;
-        double in = place(deepest(part)), out = end;
-        const auto overlap = [&](double s) { return strip_between(all_.of[on_]->at(s), off_at(s), part).overlap(); };
-        if (overlap(out) >= 0) return out;
-        for (int i = 0; i < kHalvings; ++i) {
-            const double middle = 0.5 * (in + out);
-            (overlap(middle) >= 0 ? in : out) = middle;
-        }
-        return in;
-    }
-
-    const Surfaces& all_;
-    std::size_t on_, off_;
-    Stretch stretch_;
-    std::vector<std::pair<Cut, Cut>> looked_;
-};
-
-}  // namespace
-
 std::vector<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
                                double length, double film) {
-    const std::size_t count = tuft.branches.size();
-    Surfaces all{tuft, length};
-    std::vector<std::vector<Stretch>> stretches(count);
-    for (std::size_t k = 0; k < count; ++k) {
-        std::optional<BranchSurface>& surface = all.of.emplace_back();
-        all.whole.push_back(1);
-        if (tuft.branches[k].sections.size() < 2) continue;
-        surface.emplace(tuft.branches[k], tuft.strips, frame, k < planes.size() ? &planes[k] : nullptr,
-                        std::max(film, 0.0));
-        // The hair of a wide ferrule differs in length.
-        if (tuft.wide && length > 0) all.whole[k] = surface->from_tip(surface->end()) / length;
-        stretches[k] = touching_stretches(*surface);
-    }
     std::vector<Trail> found;
+    const std::size_t count = tuft.branches.size();
     for (std::size_t k = 0; k < count; ++k) {
-        for (const Stretch& stretch : stretches[k]) found.push_back(trail_of(all, k, stretch));
-        if (!tuft.strips || !stretches[k].empty() || !all.of[k]) continue;
-        // Of a spine off the surface between two that touch nothing is known of where the hair beside it does.
-        const bool one_side = (k == 0 || stretches[k - 1].empty()) != (k + 1 == count || stretches[k + 1].empty());
-        for (const brush::Opening& opening : tuft.openings) {
-            const std::size_t first = static_cast<std::size_t>(opening.first),
-                              second = static_cast<std::size_t>(opening.second), on = first == k ? second : first;
-            if ((first != k && second != k) || !one_side || stretches[on].empty() || opening.width.front() > 0)
-                continue;
-            if (auto trail = HairBetween(all, on, k, stretches[on].front()).last_that_touches(opening))
-                found.push_back(std::move(*trail));
+        const auto& sections = tuft.branches[k].sections;
+        if (sections.size() < 2) continue;
+        const BranchSurface surface(tuft.branches[k], tuft.strips, frame, k < planes.size() ? &planes[k] : nullptr,
+                                    std::max(film, 0.0));
+        // The middle one of several branches goes on as the trunk.
+        const bool carries = count > 1 && k == count / 2 && !tuft.wide;
+        const double trunk = carries ? surface.at_section(tuft.branches[0].sections.size() - 1) : 1e9;
+        // The hair of a wide ferrule differs in length.
+        const double whole = tuft.wide && length > 0 ? surface.from_tip(surface.end()) / length : 1;
+        for (const Stretch& stretch : touching_stretches(surface)) {
+            Trail trail{.branch = static_cast<int>(k),
+                        .cuts = {},
+                        .along = {},
+                        .length = whole,
+                        .strip = tuft.strips,
+                        .corners = tuft.branches[k].strip};
+            for (const brush::Opening& opening : tuft.openings)
+                if (opening.first == trail.branch) trail.openings.push_back({opening.second, {}});
+            for (int i = 0; i < kSamples; ++i) {
+                const double f = 0.5 - 0.5 * std::cos(kPi * i / (kSamples - 1));
+                const double s = stretch.begin + f * (stretch.end - stretch.begin);
+                trail.cuts.push_back(surface.at(s));
+                trail.along.push_back(length > 0 ? whole - surface.from_tip(s) / length : 0);
+                if (s < trunk) trail.trunk = trail.cuts.size();
+                std::size_t next = 0;
+                for (const brush::Opening& opening : tuft.openings)
+                    if (opening.first == trail.branch)
+                        trail.openings[next++].width.push_back(surface.value_at(s, opening.width));
+            }
+            found.push_back(std::move(trail));
         }
     }
     return found;
@@ -541,7 +393,6 @@ void follow_track(Trail& trail, std::size_t begin, std::size_t end, HairTracks::
 
 void spread_trails(std::vector<Trail>& trails, HairTracks& tracks, const SpreadOptions& options) {
     for (Trail& trail : trails) {
-        if (trail.between) continue;
         const auto own = 2 * static_cast<std::size_t>(trail.branch);
         if (tracks.tracks.size() < own + 2) tracks.tracks.resize(own + 2);
         const std::size_t trunk = std::min(trail.trunk, trail.cuts.size());

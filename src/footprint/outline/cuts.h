@@ -47,7 +47,6 @@ struct Trail {
     std::size_t trunk = 0;               ///< index of the first cut of the whole tuft, after those of the sub-spine
     double length = 1;                   ///< of the branch's hair over the tuft's
     bool strip = false;                  ///< a spine of a row: its hair fills a rectangle, not a disc
-    bool between = false;                ///< of hair between this branch, which is off the surface, and one on it
     std::vector<Vec2> corners;           ///< of that strip, see brush::Branch
     std::vector<TrailOpening> openings;  ///< to neighbours that follow in brush::TuftState::openings
 
@@ -63,12 +62,8 @@ struct TrailPart {
     std::size_t begin = 0, end = 0;  ///< cuts [begin, end)
 };
 
-/// Returns the touching parts of all branches, cut into sections, in the order of the branches; see `outlines_of`
-/// (outline.h) for the arguments. `length` is the tuft's, metres.
-///
-/// Of a row also where ink joins a spine that touches to one that does not: the hair between them has the skin's form,
-/// X(λ) = (1 − λ) F_k + λ F_{k+1} at equal parts of the hair, and touches up to some λ. The trail of the spine off the
-/// surface lies there, λ times as wide.
+/// Returns the touching parts of all branches, cut into sections; see `outlines_of` (outline.h) for the arguments.
+/// `length` is the tuft's, metres.
 std::vector<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
                                double length, double film);
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/ease.h"
 #include "footprint/outline/cuts.h"
 
 // Hair between the spines of a row.
@@ -9,6 +10,7 @@ namespace tuft::footprint {
 namespace {
 
 constexpr double kMostSpread = 3;    // times its width, that a strip is spread to one side
+constexpr double kGives = 0.3;       // of it, up to which hair that touches its neighbours is not spread wholly
 constexpr double kAlongBroad = 0.7;  // cosine from a section's wide axis to its broad side from which they are one
 
 /// Half the broad side of a section of a strip, metres, on the surface.
@@ -28,7 +30,8 @@ struct Spread {
         if (!(size > 1e-12)) return;
         const double part = glm::dot(to, half) / size;
         double& factor = part > 0 ? plus : minus;
-        factor = std::max(factor, std::min(std::abs(part), kMostSpread));
+        const double beyond = std::min(std::abs(part), kMostSpread) - 1;
+        factor = std::max(factor, 1 + beyond * smooth_step(beyond / kGives));
     }
 };
 
