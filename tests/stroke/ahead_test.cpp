@@ -23,9 +23,13 @@ const Model& model() {
     return m;
 }
 
+// The edge and the tone of wet hair are seeded.
+constexpr std::uint64_t kSeed = 11;
+
 PaintStroke stroke_at(double y, DipMode dip, const std::string& ink = "carbon") {
     PaintStroke s = line("wolf-small", 3e-3, make_frame({0, y, 0}, {0, 0, 1}, {1, 0, 0}));
     s.ink = ink;
+    s.seed = kSeed;
     s.settings.dip = dip;
     s.settings.spacing = 2;  // coarse is enough here, and quick
     return s;
@@ -48,6 +52,7 @@ PaintStroke draped(double y, DipMode dip) {
     PaintStroke s;
     s.brush = "wolf-small";
     s.ink = "carbon";
+    s.seed = kSeed;
     s.settings.dip = dip;
     s.settings.spacing = 2;
     s.trace.placement.origin = {0, y, 0};

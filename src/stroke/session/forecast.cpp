@@ -24,7 +24,9 @@ StrokeForecast::StrokeForecast(brush::Tuft tuft, std::vector<brush::Pose> path, 
     : surface_(surface), options_(options), path_(std::move(path)), hair_(std::move(tuft)) {
     hair_.wetness = 1;
     hair_.ink_left = kWetFullness;
+    const std::uint64_t seed = hair_.bundles.seed;
     hair_.bundles = {};  // no part of bending
+    hair_.bundles.seed = seed;  // of the edge and the tone of wet hair
     cut_path(kPartPoses);
 }
 
