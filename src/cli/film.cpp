@@ -8,10 +8,10 @@
 #include "cli/revision.h"
 #include "cli/steps.h"
 #include "core/error.h"
-#include "pictures/journal_film.h"
 #include "io/image/film_file.h"
 #include "io/project/appearance.h"
 #include "io/project/restore.h"
+#include "pictures/journal_film.h"
 
 /// `tuft film`: the journal painted again before a camera.
 namespace tuft::cli {

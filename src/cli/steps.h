@@ -9,9 +9,9 @@
 
 #include "cli/arguments.h"
 #include "cli/console.h"
-#include "pictures/picture_look.h"
 #include "io/model/read_import.h"
 #include "io/project/project.h"
+#include "pictures/picture_look.h"
 #include "render/picture/picture.h"
 #include "stroke/document/document.h"
 #include "stroke/journal/entries.h"

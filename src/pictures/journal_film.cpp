@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "pictures/picture_look.h"
 #include "ink/composite/composite.h"
+#include "pictures/picture_look.h"
 #include "render/picture/brush_in_picture.h"
 #include "render/picture/picture_series.h"
 #include "stroke/session/session.h"

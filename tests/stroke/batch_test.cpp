@@ -27,7 +27,7 @@ PaintStroke stroke_at(double x, double y, double turn, const std::string& brush 
     const Vec3 along{std::cos(turn), std::sin(turn), 0};
     PaintStroke s = line(brush, 3e-3, make_frame({x, y, 0}, {0, 0, 1}, along));
     s.ink = ink;
-    s.seed = 17;  // of the edge and the tone of wet hair
+    s.seed = 17;             // of the edge and the tone of wet hair
     s.settings.spacing = 3;  // coarse is enough here, and quick
     return s;
 }

@@ -1,10 +1,10 @@
 #include "app/paint/export_command.h"
 
-#include "pictures/picture_look.h"
 #include "io/export/export.h"
 #include "io/export/export_maps.h"
 #include "io/image/image.h"
 #include "io/strokes/inkml.h"
+#include "pictures/picture_look.h"
 #include "render/picture/glass.h"
 #include "stroke/journal/recorded_journal.h"
 

@@ -9,9 +9,9 @@
 
 #include "app/document/writing.h"
 #include "brush/tuft/tuft.h"
-#include "pictures/journal_film.h"
 #include "io/project/attachments.h"
 #include "io/sheet/painted_sheet.h"
+#include "pictures/journal_film.h"
 #include "render/gl/gl_camera.h"
 #include "stroke/document/document.h"
 #include "stroke/gesture/symmetry.h"

@@ -96,10 +96,10 @@ struct Substrate {
     /// Part of the light that meets an air boundary above the ink: 1 under a glaze or
     /// varnish, 0 for a matte surface. See `Interface` (kubelka_munk.h).
     float interface = 0;
-    float relief = 8e-6f;           ///< ζ: rms height of the surface's grain, metres
-    float relief_length = 60e-6f;   ///< correlation length of the grain, metres
-    float absorbency = 0.2f;        ///< rate of absorption of the water on it, 1/s
-    float pores = 2;                ///< capacity of its pores, film units of water
+    float relief = 8e-6f;          ///< ζ: rms height of the surface's grain, metres
+    float relief_length = 60e-6f;  ///< correlation length of the grain, metres
+    float absorbency = 0.2f;       ///< rate of absorption of the water on it, 1/s
+    float pores = 2;               ///< capacity of its pores, film units of water
     /// r, metres: radius of tubes that draw as its pores do, by their rate of rise (Washburn 1921); less than their
     /// width, since ways through pores wind and end. 0: `diffusion` holds in the pores too.
     float pore_radius = 0;

@@ -11,9 +11,10 @@ using preset::shortest_in;
 Substrate parse_substrate(std::string_view text, const std::string& source) {
     const toml::table table = preset::parse_table(text, source);
     const preset::Reader in(table, source);
-    in.only({"name", "title", "reflectance", "roughness", "metallic", "transmission", "capacity", "interface",
-             "relief_um", "relief_length_um", "absorbency", "pores", "pore_radius_nm", "contact_angle_deg", "retention",
-             "diffusion", "threshold", "edge", "evaporation", "source"});
+    in.only({"name",         "title",     "reflectance",    "roughness",         "metallic",
+             "transmission", "capacity",  "interface",      "relief_um",         "relief_length_um",
+             "absorbency",   "pores",     "pore_radius_nm", "contact_angle_deg", "retention",
+             "diffusion",    "threshold", "edge",           "evaporation",       "source"});
     Substrate s;
     const auto read = [&](float& field, std::string_view key, double lo, double hi, double unit = 1) {
         const double value = in.number(key, lo, hi, static_cast<double>(field) / unit);

@@ -25,7 +25,7 @@ StrokeForecast::StrokeForecast(brush::Tuft tuft, std::vector<brush::Pose> path, 
     hair_.wetness = 1;
     hair_.ink_left = kWetFullness;
     const std::uint64_t seed = hair_.bundles.seed;
-    hair_.bundles = {};  // no part of bending
+    hair_.bundles = {};         // no part of bending
     hair_.bundles.seed = seed;  // of the edge and the tone of wet hair
     cut_path(kPartPoses);
 }
