@@ -41,7 +41,7 @@ TEST(StampBatch, PlansAndDepositsWithoutAllocationsOnceItIsWarm) {
     const ink::Ink carbon = ink::load_ink("carbon");
     const ink::DepositParams params{.mix = ink::mix_of(canvas, carbon), .extinction = ink::extinction_of(carbon)};
     PlanScratchPool scratch;
-    StampTarget target(model, canvas, substrate, nullptr, nullptr, scratch);
+    StampTarget target(model, canvas, substrate, {}, scratch);
     StampBatch batch(target, {});
     double first = 0;
     for (int repeat = 0; repeat < 4; ++repeat) {
