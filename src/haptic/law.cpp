@@ -197,7 +197,7 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     s.coupled = 0.5 * K * glm::dot(stretch, stretch) + 0.5 * m * glm::dot(velocity, velocity);
     s.free = !touching && glm::length(s.offset) < kFree;
     if (s.free) {
-        s.tank = kTankFull + s.coupled;
+        s.tank = std::clamp(s.tank, kTankFull, kTankFull + s.coupled);  // a spring that the fade drew out is no income
         s.lent = s.repaid = 0;
         s.restored *= 1 - T / kRestoreTime;
     }

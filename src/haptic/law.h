@@ -30,9 +30,9 @@
 ///    meanwhile, sent as long ago as the delay says (of two periods the worse). The true position is within half a
 ///    count of the measured one, so that by Abel's summation the second term, of f₋ smoothed over three of its motions,
 ///    bounds what the count hides.
-///    e <= r + e_0 + G stored + ½ K |y − x − s|² + ½ m v², and equal to that without r and G stored when free. e_0 is
-///    lent: r of it, as much as has come in since, stays in the tank. An empty tank is filled to 0.5 µJ, with 0.8 µJ at
-///    most in a contact, from which a hand that presses fills it by itself.
+///    e <= r + e_0 + G stored + ½ K |y − x − s|² + ½ m v². When free, e is at least e_0, r is 0 and no hair stores
+///    anything. e_0 is lent: r of it, as much as has come in since, stays in the tank. An empty tank is filled to
+///    0.5 µJ, with 0.8 µJ at most in a contact, from which a hand that presses fills it by itself.
 ///
 ///        |f| <= e′ / a where e′ < k a², else √(2 k e′ − k² a²);   a = Δx · f̂ + 60 m/s² T² + count,
 ///

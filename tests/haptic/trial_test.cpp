@@ -125,6 +125,25 @@ TEST(Trial, RandomHandsGetNothingBack) {
     }
 }
 
+// Hair that bursts off the bowl leaves the spring of the coupling stretched by what was faded: a contact's end once
+// filled the tank with it, and gave back 2 mJ in steps of 2 N.
+TEST(Trial, ASpringThatTheFadeStretchedGivesNothingBack) {
+    const TrialModel f = load_trial_model("bowl");
+    const brush::Tuft tuft = tuft_of("wolf-medium");
+    const DeviceLimits& touch = device_preset("touch");
+    TrialOptions options{.law = {.limits = touch, .gain = tuft.preset.force_gain}, .seconds = 2};
+    Random random(708);
+    options.hand = {.mass = 0.02 * std::pow(25.0, random.uniform()),
+                    .damping = random.uniform(1, 12),
+                    .stiffness = 50 * std::pow(20.0, random.uniform())};
+    random.bits(), random.bits();
+    const TrialReport r =
+        run_trial(tuft, *f.surface, hand_path(HandMotion::taps, f.place, tuft.preset, random.bits() | 1), options);
+    EXPECT_GE(r.least_energy, -kMicrojoule);
+    EXPECT_LE(r.largest_step, allowed_tap_step(touch, 0));
+    EXPECT_GT(r.contacts, 5u);
+}
+
 // The root never passes the surface; the arm does by what its motors cannot hold.
 TEST(Trial, FerruleAtHalfAMetrePerSecondStopsAndGivesNothingBack) {
     for (const char* place : {"sheet", "rim"}) {
