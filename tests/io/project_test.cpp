@@ -15,6 +15,7 @@
 #include "io/project/packing.h"
 #include "sample_model.h"
 #include "stroke/journal/entry_json.h"
+#include "stroke/journal/parts.h"
 
 namespace tuft::io {
 namespace {
@@ -385,6 +386,7 @@ TEST(Project, EntriesOfEveryKindComeBack) {
     entries.emplace_back(stroke::Fill{.ink = "indigo", .layer = 2, .mask = 3, .film = 1.0 / 3});
     entries.emplace_back(stroke::add_on_top({}, "gold"), "gold");
     entries.emplace_back(stroke::MaskEdit{.mask = {.id = 1, .name = "cap", .kind = stroke::MaskKind::angle}});
+    entries.emplace_back(stroke::locked_parts({}, {"Window"}, true));
     stroke::PaintStroke eraser{.tool = stroke::Tool::eraser, .layer = stroke::kPaletteLayer, .mask = 1};
     entries.emplace_back(eraser);
     for (std::size_t i = 0; i < entries.size(); ++i) entries[i].id = i + 1;

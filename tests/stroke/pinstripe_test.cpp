@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "core/text/units.h"
 #include "mesh/read/polygon_soup.h"
@@ -19,6 +20,25 @@ Model shipped(const std::string& name, std::uint32_t size) {
     ModelOptions options;
     options.unwrap.size = size;
     return prepare_model(mesh::read_polygon_file(file), options);
+}
+
+/// The car's flank: its triangles below y = −100 mm. Its texels are 0.13 mm, of the whole car 0.18 mm, a third of the
+/// stripe: there each layout of the charts rounds its width in another way, by up to 4 %.
+Model flank_of_car() {
+    const mesh::PolygonSoup car = mesh::read_polygon_file(source_folder() + "/models/car.ply");
+    mesh::PolygonSoup flank;
+    flank.points = car.points;
+    flank.polygon_start = {0};
+    for (std::size_t i = 0; i < car.n_polygons(); ++i) {
+        const std::span corners(car.corners.begin() + car.polygon_start[i],
+                                car.corners.begin() + car.polygon_start[i + 1]);
+        if (std::ranges::any_of(corners, [&](std::uint32_t c) { return car.points[c].y > -100; })) continue;
+        flank.corners.insert(flank.corners.end(), corners.begin(), corners.end());
+        flank.polygon_start.push_back(static_cast<std::uint32_t>(flank.corners.size()));
+    }
+    ModelOptions options;
+    options.unwrap.size = 8192;
+    return prepare_model(flank, options);
 }
 
 constexpr double kSpeed = 0.16;  // m/s
@@ -161,7 +181,7 @@ std::vector<Vec2> flank_keys() {
 
 /// Along the car's flank, from behind the nose over both arches.
 TEST(Pinstripe, AMetreOverTheCarsFlankIsEven) {
-    const Model car = shipped("car.ply", 8192);
+    const Model car = flank_of_car();
     const std::vector<Vec2> path = curve_through(flank_keys());
     Document painting(car);
     painting.paint(stripe(path, {{0, -0.24, 0.178}, {1, 0, 0}, {0, 0, -1}, SurfaceMapping::project}));
