@@ -278,8 +278,12 @@ TEST_F(TwoPrograms, ASecondWindowAsksAndItsViewFollowsTheFirst) {
     two = studio("open place/work.tuft\nawait label \"Look at it\"\nclick \"Look at it\"\nwait-ready\nexpect strokes " +
                      n(0) + "\n" + kStroke + "expect strokes " + n(0) +
                      "\nexpect message \"only looked at\"\nawait strokes " + n(1) +
-                     "\nsave copy.tuft\nwait-ready\nstroke 46%,52% 54%,56%\nwait-ready\nexpect strokes " + n(2) +
-                     "\nexpect kept\n",
+                     // A button that acted would replace the palette's message.
+                     "\nwait-ready\nkey p\nwait 0.2\nexpect message \"Pour inks\"\nclick Wash\nclick \"Rinse the "
+                     "brush\"\nwait 0.3\nexpect message \"Pour inks\"\nopen ready.png\nwait 0.2\nexpect message "
+                     "\"only looked at\"\nkey p\nwait 0.2\nsave copy.tuft\nwait-ready\nstroke 46%,52% "
+                     "54%,56%\nwait-ready\nexpect strokes " +
+                     n(2) + "\nexpect kept\n",
                  "two");
     first.join();
     EXPECT_EQ(two.status, 0) << two.err;

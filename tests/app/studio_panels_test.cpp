@@ -216,17 +216,20 @@ TEST_F(Panels, TheLanguageIsChangedInTheMenuBarAndAMissingFontIsNamedWithItsPack
 
 // What the studio names is stored in one language, so that a project reads the same in both.
 TEST_F(Panels, NamesGivenInTheChineseWindowAreStoredAsInTheEnglishOne) {
-    const Ran ran = studio(kBowl + "set language chinese\n" + kTwoStrokes +
-                               "click \"Add a layer\"\nwait-ready\nwait 0.1\nclick \"layer Layer 2\"\nwait 0.1\n"
-                               "click Duplicate\nwait-ready\nexpect label \"layer Layer 2 copy\"\n"
-                               "key f2\nwait 0.2\nkey enter\nwait-ready\nexpect label \"layer Layer 2 copy\"\n"
-                               "click \"fold Snapshots\"\nwait 0.1\nclick \"Take a snapshot\"\nwait-ready\n"
-                               "click \"snapshot Snapshot 1\"\nwait 0.1\nclick \"Snapshot name\"\nkey enter\n"
-                               "wait-ready\nexpect label \"snapshot Snapshot 1\"\n"
-                               "click \"fold Snapshots\"\nwait 0.1\nclick \"stroke 1\"\nhold ctrl\nclick \"stroke "
-                               "2\"\nhold none\nwait 0.1\nright-click \"stroke 1\"\nwait 0.1\nclick \"Make a group\"\n"
-                               "wait-ready\nwait 0.1\nexpect label \"group Group\"\nsave work.tuft\nwait-ready\n",
-                           "--headless --size 1280x1200");
+    const Ran ran =
+        studio(kBowl + "set language chinese\n" + kTwoStrokes +
+                   "click \"Add a layer\"\nwait-ready\nwait 0.1\nclick \"layer Layer 2\"\nwait 0.1\n"
+                   "click Duplicate\nwait-ready\nexpect label \"layer Layer 2 copy\"\n"
+                   "key f2\nwait 0.2\nkey enter\nwait-ready\nexpect label \"layer Layer 2 copy\"\n"
+                   "click \"fold Snapshots\"\nwait 0.1\nclick \"Take a snapshot\"\nwait-ready\n"
+                   "click \"snapshot Snapshot 1\"\nwait 0.1\nclick \"Snapshot name\"\nkey enter\n"
+                   "wait-ready\nexpect label \"snapshot Snapshot 1\"\n"
+                   "click \"fold Snapshots\"\nwait 0.1\nclick \"stroke 1\"\nhold ctrl\nclick \"stroke "
+                   "2\"\nhold none\nwait 0.1\nright-click \"stroke 1\"\nwait 0.1\nclick \"Make a group\"\n"
+                   "wait-ready\nwait 0.1\nexpect label \"group Group\"\nset tool mask\nwait 0.1\nclick Lasso\n"
+                   "stroke 45%,45% 55%,45% 55%,55% 45%,55%\nwait-ready\nexpect label \"mask Mask 1\"\n"
+                   "save work.tuft\nwait-ready\n",
+               "--headless --size 1280x1200");
     ASSERT_EQ(ran.status, 0) << ran.err;
     const nlohmann::json project = tuft("inspect '" + path("work.tuft") + "' --json");
     ASSERT_EQ(project["layers"].size(), 3u);

@@ -113,9 +113,12 @@ void decals_dialog(Session& s) {
     ui.note(ui.tr(format.note));
     dialog_row(ui, "Areas");
     std::vector<std::string> areas{"All that is painted"};
-    for (const stroke::Mask& mask : s.reported.document.masks.masks) areas.push_back(mask.name);
-    std::string area = s.reported.document.masks.find(c.mask) ? c.mask : areas[0];
-    if (ui.combo("Areas", area, areas, 200)) c.mask = area == areas[0] ? "" : area;
+    for (const stroke::Mask& mask : s.reported.document.masks.masks) areas.push_back(mask_title(ui, mask.name));
+    std::string area = s.reported.document.masks.find(c.mask) ? mask_title(ui, c.mask) : areas[0];
+    if (ui.combo("Areas", area, areas, 200)) {
+        const auto chosen = std::ranges::find(areas, area) - areas.begin();
+        c.mask = chosen == 0 ? "" : s.reported.document.masks.masks[static_cast<std::size_t>(chosen - 1)].name;
+    }
     film_rows(ui, c);
     page_rows(ui, c, format);
     ImGui::Dummy(ImVec2(0, ui.px(4)));

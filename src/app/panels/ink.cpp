@@ -164,16 +164,17 @@ void add_brush_actions(const InkParts& s) {
     };
     push_narrow_buttons(ui);
     const float quarter = part_of_row(ui, 4);
-    if (ui.button("Dip", "Fills the brush with the chosen ink; what is in it stays and mixes", quarter))
+    const bool writes = !s.reported.file.viewing;
+    if (ui.button("Dip", "Fills the brush with the chosen ink; what is in it stays and mixes", quarter, writes))
         act(stroke::EntryKind::dip, s.brush.dip_depth, s.brush.dip_side);
     ImGui::SameLine();
-    if (ui.button("Wipe", "On a rag: the ink goes, as far as the brush is dipped", quarter))
+    if (ui.button("Wipe", "On a rag: the ink goes, as far as the brush is dipped", quarter, writes))
         act(stroke::EntryKind::wipe, s.brush.dip_depth, s.brush.dip_side);
     ImGui::SameLine();
-    if (ui.button("Rinse", "Washes it: no ink left, hair straight and together", quarter))
+    if (ui.button("Rinse", "Washes it: no ink left, hair straight and together", quarter, writes))
         act(stroke::EntryKind::rinse);
     ImGui::SameLine();
-    if (ui.button("Comb", "Hair straight and together, the ink stays", 0)) act(stroke::EntryKind::reshape);
+    if (ui.button("Comb", "Hair straight and together, the ink stays", 0, writes)) act(stroke::EntryKind::reshape);
     ImGui::PopStyleVar(2);
     ui.slider(
         "How deep", s.brush.dip_depth, {0.05, 1, "%.0f %%", 0.01},

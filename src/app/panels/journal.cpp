@@ -251,6 +251,7 @@ RowText text_of(const JournalParts& s, const StrokeLine& line, std::size_t numbe
         title += s.ui.tr(line.change ? layer_change(*line.change) : actions[static_cast<int>(line.action)]);
     else
         title += length + (line.erases ? std::string("   ") + s.ui.tr("erased") : std::string());
+    if (line.action == stroke::EntryKind::mask) return {title, mask_title(s.ui, line.label)};
     if (stroke::keeps_texels(line.action)) return {title, line.change ? layer_title(s.ui, line.label) : line.label};
     const char* between = line.ink.empty() || line.brush.empty() ? "" : " \xc2\xb7 ";
     return {title, s.ui.title(line.brush) + between + s.ui.tr(line.ink.c_str())};
@@ -309,7 +310,7 @@ void draw_row(const JournalParts& s, const JournalRow& row) {
     draw->AddText(ImVec2(x, at.y + 0.5f * size - line_height - 1), hidden ? s.ui.faint : s.ui.strong, title.c_str());
     draw->AddText(ImVec2(x, at.y + 0.5f * size + 1), chosen ? s.ui.strong : s.ui.faint, below.c_str());
     if (over && !row.group && !newest.label.empty())
-        ImGui::SetTooltip("%s", newest.label.c_str());
+        ImGui::SetTooltip("%s", (stroke::keeps_texels(newest.action) ? text.below : newest.label).c_str());
     else if (over && (title != text.title || below != text.below))
         ImGui::SetTooltip("%s\n%s", text.title.c_str(), text.below.c_str());
     // Below the row that was clicked last.

@@ -1,6 +1,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "app/panels/panels.h"
 #include "core/text/units.h"
@@ -24,7 +25,7 @@ void list(Session& s) {
     ui.mark("mask none");
     for (const stroke::Mask& mask : s.reported.document.masks.masks) {
         ImGui::PushID(static_cast<int>(mask.id));
-        if (ImGui::Selectable(mask.name.c_str(), s.masks.active == mask.id))
+        if (ImGui::Selectable(mask_title(ui, mask.name).c_str(), s.masks.active == mask.id))
             choose_mask(s.masks, s.paint_thread.get(), mask.id);
         ui.mark("mask " + mask.name);
         ImGui::PopID();
@@ -44,10 +45,16 @@ void list(Session& s) {
 
 }  // namespace
 
+std::string mask_title(const Ui& ui, const std::string& name) {
+    for (const char* with : {" +", " \xc3\x97"})  // as paint's change_masks names two that are joined
+        if (name.ends_with(with)) return mask_title(ui, name.substr(0, name.size() - std::strlen(with))) + with;
+    return numbered_title(ui, name, "Mask");
+}
+
 void make_mask(Session& s, stroke::Mask mask) {
     const stroke::MaskTable& table = s.reported.document.masks;
     for (std::size_t n = table.masks.size() + 1;; ++n) {
-        mask.name = std::string(s.ui.tr("Mask")) + " " + std::to_string(n);
+        mask.name = "Mask " + std::to_string(n);  // stored in English and shown by mask_title
         if (!table.find(std::string_view(mask.name))) break;
     }
     ChangeMasks command;
@@ -65,7 +72,7 @@ void mask_section(Session& s) {
         const stroke::Mask* mask = s.reported.document.masks.find(s.masks.active);
         s.ui.heading("Mask");
         ImGui::AlignTextToFramePadding();
-        if (mask) ImGui::TextUnformatted(mask->name.c_str());
+        if (mask) ImGui::TextUnformatted(mask_title(s.ui, mask->name).c_str());
         ImGui::SameLine();
         if (s.ui.button("Mask off", "Strokes leave ink everywhere again", 0))
             choose_mask(s.masks, s.paint_thread.get(), 0);
@@ -74,6 +81,7 @@ void mask_section(Session& s) {
     Ui& ui = s.ui;
     MaskChoice& c = s.masks.choice;
     ui.heading("Mask");
+    ImGui::BeginDisabled(s.reported.file.viewing);
     const stroke::Model& model = s.paint_thread->model();
     static constexpr std::pair<MaskKind, const char*> kinds[] = {{MaskKind::angle, "Facing"},
                                                                  {MaskKind::chart, "Chart mask"},
@@ -114,6 +122,7 @@ void mask_section(Session& s) {
         if (ui.combo("With the chosen one", mode, modes))
             c.with = static_cast<int>(std::find(modes.begin(), modes.end(), mode) - modes.begin());
     }
+    ImGui::EndDisabled();
     list(s);
 }
 

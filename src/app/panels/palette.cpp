@@ -64,7 +64,8 @@ void palette_panel(Session& s) {
          "With the brush, as on the model: it takes up what lies there and leaves what is in it");
     tool(PaletteTool::pour, "Pour", "Click: a pool of the chosen ink");
     tool(PaletteTool::pick, "Take", "Click: the mixture there becomes an ink of its own");
-    if (ui.button("Wash", "Cleans the palette; Undo brings it back", third))
+    const bool writes = !s.reported.file.viewing;
+    if (ui.button("Wash", "Cleans the palette; Undo brings it back", third, writes))
         s.paint_thread->post(ActOnBrush{.action = stroke::EntryKind::wash});
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float picture = ImGui::GetContentRegionAvail().x;
@@ -84,7 +85,7 @@ void palette_panel(Session& s) {
     draw->AddRect(at, ImVec2(at.x + size.x, at.y + size.y), IM_COL32(128, 128, 128, 160), ui.px(8));
     if (p.tool == PaletteTool::pour)
         ui.slider("Pool", p.radius, {0.003, 0.02, "%.0f mm", kMillimetre}, "How wide, to each side");
-    else if (ui.button("Rinse the brush", "No ink left in it, hair straight and together", 0))
+    else if (ui.button("Rinse the brush", "No ink left in it, hair straight and together", 0, writes))
         s.paint_thread->post(
             ActOnBrush{.action = stroke::EntryKind::rinse, .brush = s.brush.preset, .ink = s.brush.ink});
     ImGui::End();

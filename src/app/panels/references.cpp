@@ -16,6 +16,7 @@ constexpr int kMostAcross = 2048;  // pixels of a texture
 constexpr float kCorner = 16;      // pixels of the corner that changes the size
 
 void keep_reference(Session& s, const ReferenceImage& r) {
+    if (s.reported.file.viewing) return;  // it is moved and hidden in this window alone
     s.paint_thread->post(AttachToProject{io::kReferences, to_attachment(r)});
 }
 
@@ -73,6 +74,13 @@ void remove_reference(Session& s, std::size_t i) {
     s.view.references.images.erase(s.view.references.images.begin() + static_cast<std::ptrdiff_t>(i));
 }
 
+bool remove_button(const Session& s) {
+    ImGui::BeginDisabled(s.reported.file.viewing);
+    const bool pressed = ImGui::Button("\xc3\x97", ImVec2(ImGui::GetFrameHeight(), 0));
+    ImGui::EndDisabled();
+    return pressed;
+}
+
 // A part of it stays in the view, wherever it is dragged.
 void keep_in_view(ReferenceImage& r, double aspect) {
     r.width = std::clamp(r.width, kLeastReference, kMostReference);
@@ -95,7 +103,7 @@ bool image_bar(Session& s, ReferenceImage& r, float width) {
     ui.mark("Opacity of " + r.name);
     ImGui::PopStyleColor();
     ImGui::SameLine(0, ui.px(4));
-    removed = ImGui::Button("\xc3\x97", ImVec2(ImGui::GetFrameHeight(), 0));
+    removed = remove_button(s);
     ui.mark("Unpin " + r.name);
     ui.hint("Takes the image off; the file stays where it is");
     ImGui::EndGroup();
@@ -200,13 +208,14 @@ void references_section(Session& s) {
         const float x = ImGui::GetCursorPosX();
         ImGui::TextUnformatted(ui.fitted(r.name, room).c_str());
         ImGui::SameLine(x + room + ui.px(6));
-        const bool gone = ImGui::Button("\xc3\x97", ImVec2(ImGui::GetFrameHeight(), 0));
+        const bool gone = remove_button(s);
         ui.mark("remove " + r.name);
         ui.hint("Takes the image off; the file stays where it is");
         ImGui::PopID();
         if (gone) return remove_reference(s, i);
     }
-    if (ui.button("Add an image...", "Pins it over the view, to paint after. It is kept in the project", 0))
+    if (ui.button("Add an image...", "Pins it over the view, to paint after. It is kept in the project", 0,
+                  !s.reported.file.viewing))
         s.dialogs.file.show(FileDialog::Purpose::reference, {});
     if (all.images.empty()) return;
     ImGui::SameLine();

@@ -115,7 +115,8 @@ void comparison_bar(Session& s) {
     ImGui::SameLine();
     if (ui.choice("Swipe", all.swipe, "One over the other; drag the line between them")) all.swipe = true;
     ImGui::SameLine();
-    const bool restore = ui.button("Restore", "Goes back to it; Undo brings back what is there now");
+    const bool restore =
+        ui.button("Restore", "Goes back to it; Undo brings back what is there now", 0, !s.reported.file.viewing);
     ImGui::SameLine();
     const bool done = ui.button("Done");
     ImGui::End();

@@ -87,7 +87,7 @@ void open_path(Session& s, const fs::path& path) {
     if (const std::string e = path.extension().string(); e == ".svg" || e == ".inkml") return open_writing(s, path);
     if (const std::string e = lower(path.extension().string());
         e == ".png" || e == ".jpg" || e == ".jpeg" || e == ".tif" || e == ".tiff")
-        return pin_reference(s.view.references, s.paint_thread.get(), s.status, path);
+        return pin_reference(s, path);
     if (has_unsaved_work(s)) return request_close(s, {CloseRequest::Then::open, path});
     s.project.start_page.pictures.pause();
     s.project.in_use.reset();

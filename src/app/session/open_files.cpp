@@ -50,8 +50,12 @@ void save_ink(const ColourState& colours, const std::string& name, StatusMessage
     }
 }
 
-void pin_reference(References& all, PaintThread* work, StatusMessage& status, const fs::path& path) {
-    if (!work) return show_message(status, "Open a model first; then images can be pinned beside it.");
+void pin_reference(Session& s, const fs::path& path) {
+    References& all = s.view.references;
+    StatusMessage& status = s.status;
+    if (!s.paint_thread) return show_message(status, "Open a model first; then images can be pinned beside it.");
+    if (s.reported.file.viewing)
+        return show_message(status, "This project is only looked at; File > Save as... makes a copy to work on.");
     try {
         ReferenceImage image = read_reference(path);
         if (all.images.size() >= io::kMostAttachments)
@@ -65,7 +69,7 @@ void pin_reference(References& all, PaintThread* work, StatusMessage& status, co
         const double step = 0.04 * static_cast<double>(all.images.size() % 6);
         image.at += Vec2(step);
         all.hidden = false;
-        work->post(AttachToProject{io::kReferences, to_attachment(image)});
+        s.paint_thread->post(AttachToProject{io::kReferences, to_attachment(image)});
         all.images.push_back(std::move(image));
     } catch (const Error& error) {
         show_message(status, error.message());

@@ -17,7 +17,7 @@ void open_ink(PaintThread* work, StatusMessage& status, const std::filesystem::p
 /// Writes an ink to a file; the file's name becomes its name.
 void save_ink(const ColourState& colours, const std::string& name, StatusMessage& status,
               const std::filesystem::path& path);
-/// Pins an image over the view.
-void pin_reference(References& references, PaintThread* work, StatusMessage& status, const std::filesystem::path& path);
+/// Pins an image over the view; not while a project is only looked at.
+void pin_reference(Session& s, const std::filesystem::path& path);
 
 }  // namespace tuft::app

@@ -259,7 +259,7 @@ void Studio::take_file(const fs::path& path) {
         case FileDialog::Purpose::writing:
             return open_writing(s, path);
         case FileDialog::Purpose::reference:
-            return pin_reference(s.view.references, s.paint_thread.get(), s.status, path);
+            return pin_reference(s, path);
         case FileDialog::Purpose::ink:
             return open_ink(s.paint_thread.get(), s.status, path);
         case FileDialog::Purpose::save_ink:

@@ -17,6 +17,7 @@ constexpr double kPreviewTolerance =
     2e-3;  // of the model's size: where it is seen edge-on, draped lines lie over its grooves
 
 constexpr double kSnapPixels = 10;
+constexpr double kShownPlace = 0.05;         // millimetres, half of the last digit of the fields
 constexpr std::size_t kMostPlacements = 64;  // of the last drawings
 
 // Of the drawings on the model, each once, the newest first.
@@ -81,7 +82,10 @@ void WritingTool::watch(const Event* cursor) {
     }
     s.tools.snap_guides = spot->guides;
     const std::optional<stroke::Placement> at = placement_at(*spot);
-    for (std::size_t k = 0; k < 3; ++k) s.tools.place_mm[k] = at->origin[static_cast<int>(k)] / kMillimetre;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double mm = at->origin[static_cast<int>(k)] / kMillimetre;
+        s.tools.place_mm[k] = std::abs(mm) < kShownPlace ? 0 : mm;  // without the sign of -0.0
+    }
     const stroke::Placement& old = placement_;
     const render::GlCamera seen_from = camera_of(s);
     const Vec4f section = section_plane(s.view, s.paint_thread->model().mesh->bounds);
