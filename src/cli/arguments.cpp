@@ -199,9 +199,10 @@ CLI::App* add_part(CLI::App& app, PartWork& part) {
                      "they were not there: strokes go through to what lies behind them. Locked parts are touched and "
                      "get no ink")
         ->check(CLI::IsMember({"list", "hide", "show", "isolate", "lock", "unlock", "substrate"}));
-    command->add_option("NAME", part.names,
-                        "names of parts (show, lock and unlock: all without any); with substrate PART=NAME, where NAME "
-                        "is that of a substrate, a .toml file, or none for the project's");
+    command->add_option(
+        "NAME", part.names,
+        "names of parts (list, show, lock and unlock: all without any); with substrate PART=NAME, where NAME "
+        "is that of a substrate, a .toml file, or none for the project's");
     add_common(command, part.common);
     return command;
 }

@@ -141,14 +141,18 @@ int run(const PartWork& a) {
     if (changes.all().empty()) throw Error(a.project.string(), "the model's file names no parts");
     change(a, changes);
     for (stroke::PartEdit& edit : changes.edits()) project.append(stroke::entry_after(entries, std::move(edit)));
+    Names listed = changes.all();
+    if (reads && !a.names.empty()) {
+        listed.assign(a.names.begin(), a.names.end());
+        stroke::check_part_names(model.mesh, listed);
+    }
     if (a.common.json) {
         nlohmann::json j{{"project", a.project.string()}, {"parts", nlohmann::json::array()}};
-        for (const std::string& name : changes.all())
-            j["parts"].push_back(to_json(changes.table().state_of(name), document));
+        for (const std::string& name : listed) j["parts"].push_back(to_json(changes.table().state_of(name), document));
         print_json(j);
         return 0;
     }
-    for (const std::string& name : changes.all()) {
+    for (const std::string& name : listed) {
         const stroke::Part part = changes.table().state_of(name);
         fmt::print("{}{}{}{}\n", name, part.hidden ? " (hidden)" : "", part.locked ? " (locked)" : "",
                    part.substrate ? ", " + part.substrate->name : "");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <numeric>
 
@@ -9,7 +10,6 @@
 #include "ink/composite/composite.h"
 #include "pictures/picture_look.h"
 #include "render/picture/brush_in_picture.h"
-#include "render/picture/picture_series.h"
 #include "stroke/session/session.h"
 
 namespace tuft::pictures {
@@ -92,13 +92,27 @@ class Camera {
         for (float& h : shown_.height.texels) h *= 1e-6f;
     }
 
+    /// Whether parts have other substrates since the last picture: the finish and all maps are others.
+    bool take_parts() {
+        if (parts_ == painting_.parts().table()) return false;
+        parts_ = painting_.parts().table();
+        shown_ = make_look(model_, &painting_, "", false);
+        compose_all();
+        standing_.reset();
+        moving_.reset();
+        return true;
+    }
+
     void take_changes() {
         stroke::Appearance& appearance = painting_.appearance();
         const std::vector<std::uint32_t> slots = appearance.take_dirty();
-        if (slots.empty()) return;
+        if (take_parts() || slots.empty()) return;
         const ink::ComposeOptions compose = appearance.compose_options();
         ink::refresh_linear(shown_.colour, slots, appearance.stack(), model_.texels, appearance.substrate(), compose);
         changed_ = ink::refreshed_tiles(slots, model_.texels, compose);
+        if (!shown_.transmission.texels.empty())
+            shown_.transmission =
+                ink::compose_transmission8(appearance.stack(), model_.texels, appearance.substrate(), compose);
         compose_relief();
         shown_.point_to_maps(model_);
         for (const std::uint32_t tile : changed_) note_difference(tile);
@@ -125,7 +139,7 @@ class Camera {
     }
 
     /// Makes the series of one camera, or of one that moves, in the light of the paint that is seen.
-    void find_light(std::unique_ptr<render::PictureSeries>& series, const render::PictureOptions& options,
+    void find_light(std::unique_ptr<render::GlassSeries>& series, const render::PictureOptions& options,
                     render::PictureSeries::Length length) {
         standing_.reset();
         moving_.reset();
@@ -134,7 +148,8 @@ class Camera {
         of_tile_.assign(model_.texels.slot_of_tile.size(), 0);
         difference_ = 0;
         surface_ = painting_.parts().surface();
-        series = std::make_unique<render::PictureSeries>(*model_.mesh, *surface_, lit_.appearance, options, length);
+        series = std::make_unique<render::GlassSeries>(*model_.mesh, *surface_, lit_.appearance,
+                                                       glass_of(lit_, painting_), options, length);
     }
 
     render::View view_at(double part) const {
@@ -164,7 +179,7 @@ class Camera {
         if (anew)
             find_light(standing_, options_,
                        part_ < 1 ? render::PictureSeries::Length::many : render::PictureSeries::Length::one);
-        return standing_->draw(shown_.appearance, std::exchange(changed_, {}));
+        return standing_->draw(shown_.appearance, shown_.transmission.texels, std::exchange(changed_, {}));
     }
 
     /// A frame that is seen for a moment, from a camera that never stands there: less light samples and rays.
@@ -178,7 +193,7 @@ class Camera {
         else
             moving_->look_from(options_.view);
         changed_.clear();
-        return moving_->draw(shown_.appearance);
+        return moving_->draw(shown_.appearance, shown_.transmission.texels);
     }
 
     static constexpr double kMoment = 1e-3;  // of the film
@@ -195,7 +210,8 @@ class Camera {
     std::vector<double> of_tile_;         ///< difference of both, by tile
     double difference_ = 0;
     std::shared_ptr<const mesh::SurfaceQuery> surface_;  ///< of the visible parts, which the series draw
-    std::unique_ptr<render::PictureSeries> standing_, moving_;
+    std::unique_ptr<render::GlassSeries> standing_, moving_;
+    stroke::PartTable parts_;  ///< of the last picture
     render::Image frame_;
 };
 
@@ -213,10 +229,16 @@ void shoot(std::vector<stroke::JournalEntry> entries, const Timeline& timeline, 
         for (; next < last && timeline.time(next) <= until; ++next)
             sink.add(view_of(camera.shoot(timeline.part(next), session)));
     };
+    // What comes before all work, such as the substrates of parts, is in the first frame.
+    const auto first = static_cast<std::size_t>(
+        std::find_if(timeline.work.begin(), timeline.work.end(), [](double work) { return work > 0; }) -
+        timeline.work.begin());
+    std::vector<stroke::JournalEntry> unseen;  // entries without a frame of their own, side by side
+    std::move(entries.begin(), entries.begin() + static_cast<std::ptrdiff_t>(first), std::back_inserter(unseen));
+    painting.replay(std::exchange(unseen, {}), go_on);
     take(0, nullptr);
     double passed = 0;
-    std::vector<stroke::JournalEntry> unseen;  // entries without a frame of their own, side by side
-    for (std::size_t i = 0; i < entries.size(); ++i) {
+    for (std::size_t i = first; i < entries.size(); ++i) {
         const double begin = std::exchange(passed, passed + timeline.work[i]), work = timeline.work[i];
         if (next >= last || timeline.time(next) > passed) {
             unseen.push_back(std::move(entries[i]));

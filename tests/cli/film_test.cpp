@@ -45,6 +45,32 @@ TEST_F(FilmCommand, BeginsBareAndEndsWithThePictureOfRender) {
     EXPECT_NE(read(path("frames/frame-00005.png")), read(path("frames/frame-00006.png")));
 }
 
+// A sheet under a pane of glass: what is behind the pane is in the frames, and the state of parts in the first one.
+TEST_F(FilmCommand, ShowsWhatIsBehindGlassAsRenderDoes) {
+    write("m.obj",
+          "o body\nv -30 -30 0\nv 30 -30 0\nv 30 30 0\nv -30 30 0\nf 1 2 3 4\n"
+          "o pane\nv -20 -20 8\nv 20 -20 8\nv 20 20 8\nv -20 20 8\nf 5 6 7 8\n");
+    write("s.inkml", stroke_file("0 0 8", "wolf-small", 20));
+    const std::string paint = "paint " + path("m.obj") + " --unit mm --up z --sides file --strokes " + path("s.inkml") +
+                              " --mapping project --atlas-size 512 --quiet --substrate clay --substrate pane=glass ";
+    ASSERT_EQ(tuft(paint + "--project " + path("p.tuft")).status, 0);
+    ASSERT_EQ(tuft(paint + "--hide-parts pane --project " + path("hidden.tuft")).status, 0);
+    const std::string film = std::string(kView) + "--seconds 0.2 --end 0 --quiet -o ";
+    ASSERT_EQ(tuft("film " + path("p.tuft") + film + path("still")).status, 0);
+    ASSERT_EQ(tuft("film " + path("p.tuft") + film + path("turning") + " --camera turntable").status, 0);
+    ASSERT_EQ(tuft("film " + path("hidden.tuft") + film + path("hidden")).status, 0);
+    for (const char* name : {"p", "hidden"})
+        ASSERT_EQ(tuft("render " + path(std::string(name) + ".tuft") + kView + "-o " + path(std::string(name) + ".png"))
+                      .status,
+                  0);
+    EXPECT_EQ(read(path("still/frame-00005.png")), read(path("p.png")));
+    EXPECT_EQ(read(path("turning/frame-00005.png")), read(path("p.png")));
+    EXPECT_EQ(read(path("hidden/frame-00005.png")), read(path("hidden.png")));
+    EXPECT_NE(read(path("p.png")), read(path("hidden.png")));
+    // A first frame from before the parts have their states would show an opaque pane in both.
+    EXPECT_NE(read(path("still/frame-00001.png")), read(path("hidden/frame-00001.png")));
+}
+
 TEST_F(FilmCommand, GivesTheSameFramesOnAnyNumberOfThreadsAndByTurns) {
     const std::string p = project();
     const std::string film = "film " + p + kView + "--seconds 0.3 --end 0 --camera front,view --quiet ";

@@ -83,7 +83,8 @@ TEST_F(PartsOfAProject, BadNamesAreOneLine) {
         EXPECT_EQ(ran.error_lines(), 1) << ran.err;
     }
     ASSERT_EQ(paint("").status, 0);
-    for (const char* more : {"hide", "hide pain", "isolate", "substrate pane", "substrate", "see pane"}) {
+    EXPECT_EQ(parts("list pane").size(), 1u);
+    for (const char* more : {"hide", "hide pain", "isolate", "substrate pane", "substrate", "see pane", "list pain"}) {
         const Ran ran = tuft("part " + path("p.tuft") + " " + more);
         EXPECT_NE(ran.status, 0) << more;
         EXPECT_EQ(ran.error_lines(), 1) << ran.err;

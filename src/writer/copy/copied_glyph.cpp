@@ -209,10 +209,11 @@ std::string numbered_svg(const Cells& ink, const Skeleton& skeleton, const Strok
                                path({end + 4.0 * on, end - 14.0 * on + 8.0 * side, end - 14.0 * on - 8.0 * side}, true),
                                colour);
             const Vec2 middle = line[line.size() / 2];
-            numbers += fmt::format(
-                "<text x=\"{:.0f}\" y=\"{:.0f}\" fill=\"{}\" stroke=\"#fff\" stroke-width=\"6\" "
-                "paint-order=\"stroke\">{}</text>\n",
-                middle.x + 6, kSide - middle.y - 6, colour, use.piece + 1);
+            // The halo is a text of its own: some viewers ignore paint-order.
+            for (const std::string& look :
+                 {std::string("#fff\" stroke=\"#fff\" stroke-width=\"6"), std::string(colour)})
+                numbers += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" fill=\"{}\">{}</text>\n", middle.x + 6,
+                                       kSide - middle.y - 6, look, use.piece + 1);
         }
     svg += "<g font-family=\"sans-serif\" font-size=\"30\" font-weight=\"bold\">\n" + numbers + "</g>\n";
     svg += fmt::format("<text x=\"24\" y=\"1070\" font-family=\"monospace\" font-size=\"{:.0f}\">{}</text>\n</svg>\n",
