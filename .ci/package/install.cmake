@@ -21,5 +21,5 @@ foreach(module ${tuft_libraries})
     PATTERN "gl_*.h" EXCLUDE PATTERN "entry_json.h" EXCLUDE PATTERN "flat_area_json.h" EXCLUDE PATTERN "presets.h" EXCLUDE PATTERN "rod_newton.h" EXCLUDE PATTERN "rod_solver.h" EXCLUDE
     PATTERN "coupled_energy.h" EXCLUDE
     PATTERN "scene_document.h" EXCLUDE PATTERN "mtl_material.h" EXCLUDE PATTERN "gltf_prune.h" EXCLUDE PATTERN "gltf_file.h" EXCLUDE PATTERN "cad_faces.h" EXCLUDE
-    PATTERN "xml_numbers.h" EXCLUDE PATTERN "json_number.h" EXCLUDE PATTERN "task_arena.h" EXCLUDE)
+    PATTERN "xml_numbers.h" EXCLUDE PATTERN "json_number.h" EXCLUDE PATTERN "stroke_description.h" EXCLUDE PATTERN "task_arena.h" EXCLUDE)
 endforeach()

@@ -386,9 +386,9 @@ TEST(Project, EntriesOfEveryKindComeBack) {
     entries.emplace_back(stroke::Fill{.ink = "indigo", .layer = 2, .mask = 3, .film = 1.0 / 3});
     entries.emplace_back(stroke::add_on_top({}, "gold"), "gold");
     entries.emplace_back(stroke::MaskEdit{.mask = {.id = 1, .name = "cap", .kind = stroke::MaskKind::angle}});
-    entries.emplace_back(stroke::locked_parts({}, {"Window"}, true));
     stroke::PaintStroke eraser{.tool = stroke::Tool::eraser, .layer = stroke::kPaletteLayer, .mask = 1};
     entries.emplace_back(eraser);
+    entries.emplace_back(stroke::locked_parts({}, {"Window"}, true));
     for (std::size_t i = 0; i < entries.size(); ++i) entries[i].id = i + 1;
     {
         Project project = Project::create(folder / "a.tuft", sample_model());
@@ -410,6 +410,7 @@ TEST(Project, EntriesOfEveryKindComeBack) {
     EXPECT_EQ(back[8].get<stroke::LayerEdit>(), entries[8].get<stroke::LayerEdit>());
     EXPECT_EQ(back[9].get<stroke::MaskEdit>(), entries[9].get<stroke::MaskEdit>());
     EXPECT_TRUE(back[10].get<stroke::PaintStroke>().erases());
+    EXPECT_EQ(back[11].get<stroke::PartEdit>(), entries[11].get<stroke::PartEdit>());
 }
 
 TEST(Project, PresetsAreReplacedByName) {

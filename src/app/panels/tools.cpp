@@ -303,8 +303,11 @@ void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
     if (w.empty()) return;
     for (const Message& note : w.notes) ui.note(ui.sentence(note));
     ui.toggle("Mirrored", w.mirrored);
+    ImGui::SameLine();
     ui.toggle("Snap", tools.snap, "To the plane of symmetry and level with other drawings; Ctrl places it freely");
-    place_fields(ui, tools);
+    ImGui::SameLine();
+    ui.toggle("mm", tools.shows_place, "Place in millimetres");
+    if (tools.shows_place) place_fields(ui, tools);
     const bool names =
         std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });
     if (names) ui.toggle("Its brush and ink", w.own_ink, "As the file names them; strokes scale with the drawing");

@@ -29,6 +29,7 @@ struct ToolState {
     bool snap = true;                            ///< drawings snap to planes of symmetry and to other drawings
     std::vector<std::vector<Vec3>> snap_guides;  ///< metres, lines along the surface that the drawing snapped to
     std::array<double, 3> place_mm{};            ///< of the drawing at the cursor, or as typed
+    bool shows_place = false;                    ///< of the drawing, in fields
     bool place_typed = false;                    ///< to be placed there
     stroke::Fill fill;
 };
