@@ -21,7 +21,8 @@ void add_materials(CLI::App* p, Paint& paint) {
                   "brush for all strokes ('tuft brush' lists them; goat-small*0.5 is one of half the size; default: "
                   "what they name, else wolf-medium)");
     p->add_option("--ink", paint.ink,
-                  "ink for all strokes: a name ('tuft ink' lists them), a .toml file, or a colour such as '#c03020' "
+                  "ink for all strokes: a name ('tuft ink' lists them), a .toml file, or a colour such as '#c03020'; "
+                  "dips that a file records keep their own inks "
                   "(default: what they name, else carbon)");
     p->add_option("--mask", paint.mask, "mask of the project to keep to, for strokes that name none");
     p->add_flag_callback(

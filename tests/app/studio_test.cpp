@@ -206,6 +206,13 @@ TEST_F(StudioProgram, LinesAndCurvesArePaintedWithTheChosenSettings) {
     EXPECT_EQ(strokes.back().get<stroke::PaintStroke>().settings.film, stroke::FilmModel::wet);
 }
 
+// The release comes when there is no model: the next one is painted on as the first was.
+TEST_F(StudioProgram, AModelClosedUnderAStrokeLeavesNoStrokeBehind) {
+    const Ran ran = studio(kBowl + "move 46%,50%\npress\nmove 50%,52%\nclose\nrelease\nwait-ready 20\n" + kBowl +
+                           "stroke 46%,50% 54%,50%\nwait-ready\nexpect strokes 1\n");
+    EXPECT_EQ(ran.status, 0) << ran.err;
+}
+
 // What is held on the keyboard turns the wheel and the buttons to other uses, in either keymap.
 TEST_F(StudioProgram, HeldKeysRollPanAndZoom) {
     const std::string drag = "move 55%,55%\npress middle\nmove 60%,50%\nrelease middle\nwait-ready\nreport\n";

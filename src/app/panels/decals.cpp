@@ -75,7 +75,9 @@ void page_rows(Ui& ui, DecalSettings& c, const SheetFormat& format) {
     ui.toggle("A plate for each pigment", c.plates, "Separations for screen and pad printing instead of colours");
     ImGui::EndDisabled();
     dialog_row(ui, "");
+    ImGui::BeginDisabled(!format.prints);
     ui.toggle("Pages of strain", c.strain_map, "A page after each that shows how far its pieces are stretched");
+    ImGui::EndDisabled();
     dialog_row(ui, "");
     ui.toggle("Along the grain", c.along_grain, "All pieces point up the page; else they are turned to fill it");
 }
@@ -97,7 +99,7 @@ ExportSheets sheets_command(const DecalSettings& c, const stroke::MaskTable& mas
     request.sheet.page = {page.width, page.height};
     request.sheet.upright = c.along_grain;
     request.sheet.pixel = kInch / c.dpi;
-    request.sheet.strain_map = c.strain_map;
+    request.sheet.strain_map = c.strain_map && format.prints;
     request.sheet.prints = path.extension() != ".dxf";
     return command;
 }

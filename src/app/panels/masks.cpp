@@ -32,15 +32,14 @@ void list(Session& s) {
     }
     if (s.masks.active == 0) return;
     const bool writes = !s.reported.file.viewing;
-    const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
-    if (ui.button("Invert", "A mask of what this one leaves out", half, writes)) {
+    if (ui.button("Invert", "A mask of what this one leaves out", 0, writes)) {
         stroke::Mask mask;
         mask.kind = MaskKind::invert;
         mask.of = {s.masks.active};
         make_mask(s, std::move(mask));
     }
     ImGui::SameLine();
-    if (ui.button("Remove mask", "Strokes that keep to it stay as they are", half, writes)) remove(s, s.masks.active);
+    if (ui.button("Remove mask", "Strokes that keep to it stay as they are", 0, writes)) remove(s, s.masks.active);
 }
 
 }  // namespace
@@ -116,8 +115,7 @@ void mask_section(Session& s) {
         }
     }
     if (s.masks.active != 0) {
-        static const std::vector<std::string> modes{"By itself", "Added to the chosen one",
-                                                    "Only within the chosen one"};
+        static const std::vector<std::string> modes{"By itself", "Added to that mask", "Only within that mask"};
         std::string mode = modes[static_cast<std::size_t>(c.with)];
         if (ui.combo("With the chosen one", mode, modes))
             c.with = static_cast<int>(std::find(modes.begin(), modes.end(), mode) - modes.begin());

@@ -66,10 +66,10 @@ void choose(const PartParts& s, const std::string& name) {
     }
 }
 
-std::string row_text(const PartParts& s, const stroke::Part& part, float width) {
+std::string row_text(const PartParts& s, const stroke::Part& part) {
     std::string text = part.name;
     if (part.substrate) text += "  " + s.ui.title(part.substrate->name);
-    return s.ui.fitted(text, width);
+    return text;
 }
 
 void row(const PartParts& s, const std::string& name) {
@@ -90,11 +90,11 @@ void row(const PartParts& s, const std::string& name) {
     ImGui::EndDisabled();
     ImGui::SameLine();
     if (part.hidden) ImGui::PushStyleColor(ImGuiCol_Text, ui.faint);
-    const std::string text = row_text(s, part, ImGui::GetContentRegionAvail().x);
+    const std::string whole = row_text(s, part), text = ui.fitted(whole, ImGui::GetContentRegionAvail().x);
     if (ui.entry((text + "###row").c_str(), s.parts.chosen.contains(name), ui.px(kRowHeight - 4))) choose(s, name);
     if (part.hidden) ImGui::PopStyleColor();
     ui.mark("part " + name);
-    if (text.size() < name.size()) ui.hint(name.c_str());
+    if (text != whole) ui.hint(whole.c_str());
     ImGui::PopStyleVar();
     ImGui::PopID();
 }

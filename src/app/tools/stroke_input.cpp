@@ -103,7 +103,6 @@ void StrokeInput::follow_view(const Event& cursor) {
 void StrokeInput::release(const Event& e) {
     move(e);
     lift(e.time);
-    session_.tools.pointer_down = false;
 }
 
 void StrokeInput::cancel() {
@@ -113,7 +112,7 @@ void StrokeInput::cancel() {
 
 void StrokeInput::lift(double now) {
     if (hand_ && session_.paint_thread) post(hand_->lift(), now);
-    hand_.reset();
+    drop();
 }
 
 void StrokeInput::drop() {
