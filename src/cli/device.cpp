@@ -158,7 +158,7 @@ int record_device(const DeviceWork& a) {
 
 ContactModel load_contact_model(const std::filesystem::path& file) {
     std::filesystem::path path = file.empty() ? "bowl" : file;
-    if (!path.has_extension()) path = data_folder() / "models" / (path.string() + ".ply");
+    if (!path.has_extension() && !path.has_parent_path()) path = data_folder() / "models" / (path.string() + ".ply");
     mesh::RepairOptions options;
     options.metres_per_unit = io::metres_per_unit_of(path).value_or(1e-3);
     ContactModel model;

@@ -92,8 +92,12 @@ Spot free_spot(const stroke::Model& model, const Paint& a, const Vec2& size, dou
 Spot snapped_spot(const stroke::Model& model, const Paint& a, const Spot& spot) {
     if (a.snap.empty()) return spot;
     const Box& box = model.mesh->bounds;
+    const int axis = a.snap[0] - 'x';
+    if (const auto side = stroke::side_named(a.on); side && std::abs(stroke::look_at_side(*side)[axis]) > 0.5)
+        throw UsageError(
+            fmt::format("--snap {} puts the drawing beside the {} side, which --on asks for", a.snap, a.on));
     stroke::SnapPlane plane{.through = box.centre(), .normal = Vec3(0)};
-    plane.normal[a.snap[0] - 'x'] = 1;
+    plane.normal[axis] = 1;
     const auto at = stroke::surface_point_in_plane(*model.query, spot.at.position, plane, box.diagonal());
     if (!at)
         throw Error(a.model.string(),
