@@ -60,7 +60,7 @@ TEST_F(BadInput, PathsThatLeadNowhereSayWhy) {
 TEST_F(BadInput, MistakenOptionsNameTheHelpOfTheirCommand) {
     expect_refused("paint " + sheet() + " --strokes " + good_strokes() + " --on ceiling", 2,
                    "(see 'tuft paint --help')");
-    expect_refused("paint " + sheet() + " --strokes " + good_strokes() + " --on front --snap y", 2, "the front side");
+    expect_refused("paint " + sheet() + " --strokes " + good_strokes() + " --on top --snap z", 2, "the top side");
     expect_refused("device test --seconds never", 2, "(see 'tuft device test --help')");
     expect_refused("brush calibrate", 2, "(see 'tuft brush calibrate --help')");
     expect_refused("", 2, "(see 'tuft --help')");
