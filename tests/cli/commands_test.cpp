@@ -577,6 +577,16 @@ TEST_F(Commands, UvsOnSeveralPagesAreKept) {
     EXPECT_FALSE(std::filesystem::exists(path("g.obj")));
 }
 
+TEST_F(Commands, SampleStrokesFindTheirInksFromAnyFolder) {
+    const std::string paint = " --strokes " + source_folder() + "/samples/strokes/vase-plum.inkml --atlas-size 256";
+    const Ran ran = tuft("paint " + model("vase.ply") + paint, "cd '" + folder_.string() + "';");
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    const Ran outside = tuft("paint " + model("vase.ply") + paint + " --ink samples/../../inks/none.toml",
+                             "cd '" + folder_.string() + "';");
+    EXPECT_EQ(outside.status, 1);
+    EXPECT_NE(outside.err.find("samples/../../inks/none.toml: no such file"), std::string::npos) << outside.err;
+}
+
 TEST_F(Commands, AReportOfTheBenchmarkIsRefusedBeforeItMeasures) {
     write("other.json", "{\"format\": \"tuft variants 1\"}");
     write("deep.json", std::string(5000, '['));

@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/system/files.h"
 #include "core/system/library_fault.h"
+#include "core/system/shipped_file.h"
 #include "core/text/nesting.h"
 #include "core/text/units.h"
 
@@ -393,6 +394,7 @@ Preset load_preset(const std::string& name_or_path) {
         }
         path = preset_folder() / (name + ".toml");
     }
+    path = or_shipped(path);
     const std::vector<char> bytes = read_file(path, (1 << 20) + kMostGeometryBytes);
     return as_stored(parse_preset({bytes.data(), bytes.size()}, path.string(), path.parent_path()), path.string());
 }

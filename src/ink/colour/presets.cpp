@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/system/files.h"
 #include "core/system/library_fault.h"
+#include "core/system/shipped_file.h"
 #include "core/text/nesting.h"
 
 namespace fs = std::filesystem;
@@ -126,6 +127,7 @@ Text load(std::string_view name, const char* folder, const char* kind) {
         }
         path = data_folder() / "models" / folder / (std::string(name) + ".toml");
     }
+    path = or_shipped(path);
     const std::vector<char> bytes = read_file(path, kMaxBytes);
     return {{bytes.begin(), bytes.end()}, path.string(), path.stem().string()};
 }
