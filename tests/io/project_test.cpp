@@ -6,14 +6,12 @@
 
 #include <csignal>
 #include <cstring>
-#include <functional>
 #include <set>
 
 #include "core/error.h"
-#include "core/random.h"
 #include "core/system/files.h"
 #include "io/project/packing.h"
-#include "sample_model.h"
+#include "sample_project.h"
 #include "stroke/journal/entry_json.h"
 #include "stroke/journal/parts.h"
 
@@ -23,41 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 using namespace testing;
-
-ProjectModel sample_model() {
-    ProjectModel model;
-    model.source = "bowl.ply";
-    model.frame = {.unit = "in", .y_up = true};
-    model.mesh = cylinder();
-    model.mesh.vertex_colours.assign(model.mesh.n_vertices(), {10, 20, 30, 255});
-    model.atlas = cylinder_atlas(model.mesh);
-    model.substrate = ink::substrate_toml(ink::load_substrate("porcelain"));
-    return model;
-}
-
-stroke::JournalEntry sample_stroke(std::uint64_t id, int samples = 50) {
-    stroke::PaintStroke s;
-    s.trace.flat = id % 2 == 0;
-    s.brush = "goat-medium";
-    s.ink = "carbon";
-    s.seed = 0xfedcba9876543210ULL + id;
-    s.trace.placement.origin = {0.1, -0.0, 1e-300};
-    s.trace.placement.mapping = id % 3 == 0 ? stroke::SurfaceMapping::project : stroke::SurfaceMapping::wrap;
-    s.settings.spacing = 0.1 + 1.0 / 3;
-    s.settings.compensate_tip_lag = false;
-    for (int i = 0; i < samples; ++i) {
-        const auto r = [&](int k) { return uniform(id, 100 * i + k) - 0.5; };
-        s.trace.samples.push_back({.time = 0.01 * i,
-                                   .position = {r(0), r(1), r(2)},
-                                   .pressure = r(3),
-                                   .tilt = {r(4), r(5)},
-                                   .rotation = Quat(r(6), r(7), r(8), r(9))});
-    }
-    stroke::JournalEntry entry(s, "七 \"1\"\n");
-    entry.id = id;
-    entry.hidden = id % 5 == 0;
-    return entry;
-}
 
 /// Equal to the bit, also the sign of zero.
 void expect_equal(const stroke::JournalEntry& a, const stroke::JournalEntry& b) {
@@ -499,103 +462,6 @@ TEST(Project, MakingAProjectAnewIgnoresTheOldJournal) {
     Project::create(folder / "a.tuft", sample_model());
     EXPECT_EQ(Project::open(folder / "a.tuft").n_strokes(), 0u);
     EXPECT_EQ(folder.n_files(), 1u);
-}
-
-std::string fault(const std::filesystem::path& path) {
-    try {
-        Project project = Project::open(path);
-        project.model();
-        project.strokes();
-        project.inks();
-        project.load_canvas(500);
-    } catch (const Error& e) {
-        return e.what();
-    }
-    return "";
-}
-
-TEST(Project, ForeignFilesAreNamedAsSuch) {
-    const Folder folder("project_foreign");
-    EXPECT_NE(fault(folder / "none.tuft").find("no such file"), std::string::npos);
-    const std::string text = "just some text";
-    write_file(folder / "t.tuft", text.data(), text.size());
-    EXPECT_NE(fault(folder / "t.tuft").find("is not a tuft project"), std::string::npos);
-    EXPECT_FALSE(is_project(folder / "t.tuft"));
-    write_file(folder / "empty.tuft", text.data(), 0);
-    EXPECT_NE(fault(folder / "empty.tuft").find("is not a tuft project"), std::string::npos);
-
-    Project::create(folder / "a.tuft", sample_model());
-    EXPECT_TRUE(is_project(folder / "a.tuft"));
-    std::vector<char> bytes = read_file(folder / "a.tuft");
-    std::vector<char> other = bytes;
-    std::memcpy(&other[68], "GPKG", 4);
-    write_file(folder / "o.tuft", other.data(), other.size());
-    EXPECT_NE(fault(folder / "o.tuft").find("not a tuft project"), std::string::npos);
-    bytes[63] = kProjectFormat + 1;  // user_version
-    write_file(folder / "n.tuft", bytes.data(), bytes.size());
-    EXPECT_NE(fault(folder / "n.tuft")
-                  .find("newer tuft (format " + std::to_string(kProjectFormat + 1) + ", this one reads up to " +
-                        std::to_string(kProjectFormat) + ")"),
-              std::string::npos);
-    EXPECT_THROW(Project::create(folder / "no/where/a.tuft", sample_model()), Error);
-}
-
-TEST(Project, WhatCannotBeOpenedSaysWhyInWordsOfPeople) {
-    const Folder folder("project_unopened");
-    const auto says = [](const std::function<void()>& act) {
-        try {
-            act();
-        } catch (const Error& error) {
-            return std::string(error.what());
-        }
-        return std::string();
-    };
-    fs::create_directories(folder / "folder.tuft");
-    EXPECT_NE(fault(folder / "folder.tuft").find("is a folder"), std::string::npos);
-    fs::create_directories(folder / "work");
-    Project project = Project::create(folder / "work/a.tuft", sample_model());
-    project.append(sample_stroke(1));
-    // Its rollback journal cannot be made.
-    fs::create_directories(folder / "work/a.tuft-journal");
-    const std::string blocked = says([&] { project.append(sample_stroke(2)); });
-    EXPECT_NE(blocked.find("a.tuft: cannot be"), std::string::npos) << blocked;
-    fs::remove(folder / "work/a.tuft-journal");
-    fs::rename(folder / "work", folder / "elsewhere");
-    const std::string moved = says([&] { project.append(sample_stroke(2)); });
-    EXPECT_NE(moved.find("is not there any more"), std::string::npos) << moved;
-    for (const std::string& text : {blocked, moved}) EXPECT_EQ(text.find("database"), std::string::npos) << text;
-    fs::rename(folder / "elsewhere", folder / "work");
-    EXPECT_EQ(says([&] { project.append(sample_stroke(2)); }), "");
-}
-
-TEST(Project, DamagedFilesAreErrorsNeverCrashes) {
-    const Folder folder("project_damaged");
-    {
-        Project project = Project::create(folder / "a.tuft", sample_model());
-        for (std::uint64_t id = 1; id < 6; ++id) project.append(sample_stroke(id, 200));
-        ink::Canvas canvas(500);
-        canvas.add_pigment(ink::load_ink("carbon").parts[0].pigment);
-        for (std::uint32_t slot = 0; slot < 20; ++slot) canvas.touch(slot, 0).fill(0.5f);
-        project.save_canvas(canvas, 5);
-    }
-    const std::vector<char> good = read_file(folder / "a.tuft");
-    EXPECT_EQ(fault(folder / "a.tuft"), "");
-    for (const double part : {0.02, 0.3, 0.7, 0.99}) {
-        write_file(folder / "cut.tuft", good.data(), static_cast<std::size_t>(part * good.size()));
-        EXPECT_NE(fault(folder / "cut.tuft"), "") << part;
-    }
-    int refused = 0;
-    for (int i = 0; i < 120; ++i) {
-        std::vector<char> bytes = good;
-        Random random(i);
-        for (int k = 0; k < 1 + i % 20; ++k) {
-            const std::size_t at = 100 + static_cast<std::size_t>(random.uniform() * (bytes.size() - 100));
-            bytes[at] = static_cast<char>(random.bits());
-        }
-        write_file(folder / "bad.tuft", bytes.data(), bytes.size());
-        refused += fault(folder / "bad.tuft") != "";
-    }
-    EXPECT_GT(refused, 10) << "some hits fall on text, unused space or bits nobody checks";
 }
 
 }  // namespace

@@ -250,28 +250,28 @@ double round_z(const Vec3& p, double radius) {
     return radius * (std::numbers::pi + std::atan2(p.x, -p.y));
 }
 
-/// A line of a drawing, as an area in an S over 120° of a ball, as curved across as along.
-TEST(Pinstripe, ALineAsAnAreaOverABallIsEven) {
-    const Model ball = shipped("sphere.ply", 4096);
-    constexpr double kRadius = 50e-3;
-    Placement place = before(ball, ball.mesh->bounds.centre().z);
+/// How even a line of a drawing is that is painted as an area, draped in an S over half a model: `radius` turns angles
+/// round z into lengths.
+Evenness draped_area(const Model& model, double half_length, double height, double radius) {
+    Placement place = before(model, model.mesh->bounds.centre().z);
     place.mapping = SurfaceMapping::drape;
-    Document painting(ball);
-    painting.paint(line_area(wave(52e-3, 9e-3), place, 6e-3));
-    const Evenness e = measure(painting, ball, 5e-3, [&](const Vec3& p) { return round_z(p, kRadius); });
+    Document painting(model);
+    painting.paint(line_area(wave(half_length, height), place, 6e-3));
+    return measure(painting, model, 5e-3, [&](const Vec3& p) { return round_z(p, radius); });
+}
+
+/// Over 120° of a ball, as curved across as along.
+TEST(Pinstripe, ALineAsAnAreaOverABallIsEven) {
+    const Evenness e = draped_area(shipped("sphere.ply", 4096), 52e-3, 9e-3, 50e-3);
     record(e);
     EXPECT_LE(e.deviation, 0.03 * e.mean);
 }
 
-/// The same over the wall of a bowl, which narrows downwards.
+/// Over the wall of a bowl, which narrows downwards.
 TEST(Pinstripe, ALineAsAnAreaOverABowlIsEven) {
     const Model bowl = shipped("bowl.ply", 4096);
-    Placement place = before(bowl, bowl.mesh->bounds.centre().z);
-    place.mapping = SurfaceMapping::drape;
-    const double radius = std::hypot(place.origin.x, place.origin.y);
-    Document painting(bowl);
-    painting.paint(line_area(wave(75e-3, 8e-3), place, 6e-3));
-    const Evenness e = measure(painting, bowl, 5e-3, [&](const Vec3& p) { return round_z(p, radius); });
+    const Vec3 front = before(bowl, bowl.mesh->bounds.centre().z).origin;
+    const Evenness e = draped_area(bowl, 75e-3, 8e-3, std::hypot(front.x, front.y));
     record(e);
     EXPECT_LE(e.deviation, 0.03 * e.mean);
 }

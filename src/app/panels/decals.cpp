@@ -123,16 +123,7 @@ void decals_dialog(Session& s) {
     }
     film_rows(ui, c);
     page_rows(ui, c, format);
-    ImGui::Dummy(ImVec2(0, ui.px(4)));
-    ui.buttons_at_right({{"Cancel", 110}, {"Choose a file...", 160}});
-    const bool cancel = ui.button("Cancel", nullptr, 110);
-    ImGui::SameLine();
-    const bool go = ui.primary_button("Choose a file...", 160);
-    end_dialog(s.ui);
-    if (go)
-        s.dialogs.file.show(FileDialog::Purpose::decals,
-                            project_name(s.paint_thread.get(), s.reported.file.project) + format.extension);
-    if (go || cancel) s.dialogs.show_decals = false;
+    end_dialog_with_file(s, s.dialogs.show_decals, FileDialog::Purpose::decals, format.extension);
 }
 
 }  // namespace tuft::app

@@ -32,6 +32,17 @@ void end_dialog(Ui& ui) {
     ImGui::PopStyleVar();
 }
 
+void end_dialog_with_file(Session& s, bool& shown, FileDialog::Purpose purpose, const std::string& extension) {
+    ImGui::Dummy(ImVec2(0, s.ui.px(4)));
+    s.ui.buttons_at_right({{"Cancel", 110}, {"Choose a file...", 160}});
+    const bool cancel = s.ui.button("Cancel", nullptr, 110);
+    ImGui::SameLine();
+    const bool go = s.ui.primary_button("Choose a file...", 160);
+    end_dialog(s.ui);
+    if (go) s.dialogs.file.show(purpose, project_name(s.paint_thread.get(), s.reported.file.project) + extension);
+    if (go || cancel) shown = false;
+}
+
 void dialog_row(Ui& ui, const char* name) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("%s", ui.tr(name));

@@ -116,17 +116,7 @@ void export_dialog(Session& s) {
     map_rows(ui, c, s.paint_thread->model().atlas.size);
     picture_rows(ui, c);
     ImGui::EndDisabled();
-    ImGui::Dummy(ImVec2(0, ui.px(4)));
-    ui.buttons_at_right({{"Cancel", 110}, {"Choose a file...", 160}});
-    const bool cancel = ui.button("Cancel", nullptr, 110);
-    ImGui::SameLine();
-    const bool go = ui.primary_button("Choose a file...", 160);
-    end_dialog(s.ui);
-    if (go)
-        s.dialogs.file.show(
-            FileDialog::Purpose::export_model,
-            project_name(s.paint_thread.get(), s.reported.file.project) + preset_of(c.preset).extension);
-    if (go || cancel) s.dialogs.show_export = false;
+    end_dialog_with_file(s, s.dialogs.show_export, FileDialog::Purpose::export_model, preset_of(c.preset).extension);
 }
 
 }  // namespace tuft::app

@@ -109,16 +109,7 @@ void film_dialog(Session& s) {
     ui.note(ui.tr(format.note));
     length_rows(ui, c);
     frame_rows_of_film(ui, c);
-    ImGui::Dummy(ImVec2(0, ui.px(4)));
-    ui.buttons_at_right({{"Cancel", 110}, {"Choose a file...", 160}});
-    const bool cancel = ui.button("Cancel", nullptr, 110);
-    ImGui::SameLine();
-    const bool go = ui.primary_button("Choose a file...", 160);
-    end_dialog(s.ui);
-    if (go)
-        s.dialogs.file.show(FileDialog::Purpose::film,
-                            project_name(s.paint_thread.get(), s.reported.file.project) + format.extension);
-    if (go || cancel) s.dialogs.show_film = false;
+    end_dialog_with_file(s, s.dialogs.show_film, FileDialog::Purpose::film, format.extension);
 }
 
 }  // namespace tuft::app

@@ -193,6 +193,9 @@ unsigned colour_in_tuft(const BrushSettings& brush, const ColourState& colours, 
 /// Begins a modal window in the centre. Returns true while it is drawn; then call `end_dialog`.
 bool begin_dialog(Ui& ui, const char* title, float width);
 void end_dialog(Ui& ui);
+/// Ends the dialog `shown` by its buttons: "Cancel", and one that lets a file be chosen for `purpose`, named after the
+/// project with `extension`. Either closes it.
+void end_dialog_with_file(Session& s, bool& shown, FileDialog::Purpose purpose, const std::string& extension);
 /// Starts a row of a dialog with a name before its widget.
 void dialog_row(Ui& ui, const char* name);
 

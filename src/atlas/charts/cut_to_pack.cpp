@@ -245,25 +245,16 @@ std::vector<std::uint32_t> largest_by(const std::vector<ChartBox>& boxes, double
     return order;
 }
 
-std::vector<std::optional<Halves>> halve_all(const mesh::TriangleMesh& mesh, const CutMesh& cut,
-                                             std::span<const std::uint32_t> charts, double gap) {
+/// Each chart in two along the line that `line_of` gives, if it gives one that divides it.
+template <class LineOf>
+std::vector<std::optional<Halves>> divide_all(const mesh::TriangleMesh& mesh, const CutMesh& cut,
+                                              std::span<const std::uint32_t> charts, double gap, LineOf line_of) {
     std::vector<std::optional<Halves>> halves(charts.size());
     run_tasks(charts.size(), [&](std::size_t i) {
         const FlatChart& chart = cut.charts[charts[i]];
-        halves[i] = divide(mesh, cut, chart, gap, middle_line(chart));
+        if (const std::optional<Line> line = line_of(chart)) halves[i] = divide(mesh, cut, chart, gap, *line);
     });
     return halves;
-}
-
-/// The same by lines that leave full boxes.
-std::vector<std::optional<Halves>> separate_all(const mesh::TriangleMesh& mesh, const CutMesh& cut,
-                                                std::span<const std::uint32_t> charts, double gap) {
-    std::vector<std::optional<Halves>> parts(charts.size());
-    run_tasks(charts.size(), [&](std::size_t i) {
-        const FlatChart& chart = cut.charts[charts[i]];
-        if (const std::optional<Line> line = emptying_line(chart)) parts[i] = divide(mesh, cut, chart, gap, *line);
-    });
-    return parts;
 }
 
 /// All charts that are about as long as the longest, which may be all that keeps the rest small.
@@ -273,7 +264,7 @@ void add_longest(std::vector<Proposal>& all, const mesh::TriangleMesh& mesh, con
     std::vector<std::uint32_t> longest;
     for (const std::uint32_t c : order)
         if (boxes[c].length >= kAsLong * boxes[order[0]].length) longest.push_back(c);
-    const std::vector<std::optional<Halves>> halves = halve_all(mesh, cut, longest, gap);
+    const std::vector<std::optional<Halves>> halves = divide_all(mesh, cut, longest, gap, middle_line);
     Proposal together;
     for (std::size_t i = 0; i < longest.size(); ++i)
         if (halves[i]) together.push_back({longest[i], *halves[i]});
@@ -284,7 +275,7 @@ void add_longest(std::vector<Proposal>& all, const mesh::TriangleMesh& mesh, con
 std::vector<Proposal> proposals_of_few(const mesh::TriangleMesh& mesh, const CutMesh& cut,
                                        const std::vector<ChartBox>& boxes, double gap) {
     const std::vector<std::uint32_t> order = largest_by(boxes, &ChartBox::area, kCandidates);
-    const std::vector<std::optional<Halves>> halves = halve_all(mesh, cut, order, gap);
+    const std::vector<std::optional<Halves>> halves = divide_all(mesh, cut, order, gap, middle_line);
     std::vector<Proposal> all;
     for (std::size_t i = 0; i < order.size(); ++i)
         if (halves[i]) all.push_back({{order[i], *halves[i]}});
@@ -298,7 +289,7 @@ std::vector<Proposal> proposals_of_many(const mesh::TriangleMesh& mesh, const Cu
                                         const std::vector<ChartBox>& boxes, double gap) {
     std::vector<std::uint32_t> order = largest_by(boxes, &ChartBox::empty, kCandidatesOfMany);
     std::erase_if(order, [&](std::uint32_t c) { return boxes[c].empty < kEmpty; });
-    const std::vector<std::optional<Halves>> halves = separate_all(mesh, cut, order, gap);
+    const std::vector<std::optional<Halves>> halves = divide_all(mesh, cut, order, gap, emptying_line);
     std::vector<Proposal> all;
     Proposal together;
     for (std::size_t i = 0; i < order.size(); ++i) {

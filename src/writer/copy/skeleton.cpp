@@ -10,7 +10,7 @@
 namespace tuft::writer {
 namespace {
 
-constexpr double kTwig = 1.8;          // of the room at its junction
+constexpr double kSpur = 1.8;          // of the room at its junction
 constexpr double kOne = 1.2;           // of the larger room of two junctions
 constexpr double kBefore = 12;         // units between the end of a centre line and the edge
 constexpr double kEndReach = 24;       // units of an end over which its direction is taken
@@ -164,14 +164,14 @@ void add_blob(Skeleton& s, std::size_t node) {
     s.nodes.push_back(other);
 }
 
-/// Takes twigs off until none is left.
+/// Takes spurs off until none is left.
 void prune(Skeleton& s) {
     for (bool any = true; any;) {
         count_ends(s);
         any = std::erase_if(s.pieces, [&](const Piece& p) {
                   const bool head = s.nodes[p.from].n_pieces == 1, tail = s.nodes[p.to].n_pieces == 1;
                   const SkeletonNode& root = s.nodes[head ? p.to : p.from];
-                  return head != tail && root.n_pieces > 2 && p.length() < kTwig * root.room;
+                  return head != tail && root.n_pieces > 2 && p.length() < kSpur * root.room;
               }) > 0;
         const std::vector<SkeletonNode> before = s.nodes;
         count_ends(s);
