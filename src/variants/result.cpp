@@ -43,8 +43,9 @@ std::vector<const stroke::StrokeSamples*> traces_on_model(const std::vector<stro
 
 template <class T>
 void put(std::vector<char>& out, const T* values, std::size_t n) {
-    const auto* first = reinterpret_cast<const char*>(values);
-    out.insert(out.end(), first, first + n * sizeof(T));
+    const std::size_t at = out.size();
+    out.resize(at + n * sizeof(T));
+    if (n > 0) std::memcpy(out.data() + at, values, n * sizeof(T));
 }
 
 /// Numbers one after the other, none beyond the end.

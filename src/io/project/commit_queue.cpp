@@ -9,7 +9,7 @@
 namespace tuft::io {
 
 struct CommitQueue::State {
-    explicit State(Project& project) : project(project) {}
+    explicit State(Project& to) : project(to) {}
 
     Project& project;
     std::mutex mutex;  // of what follows
