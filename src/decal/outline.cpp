@@ -173,6 +173,7 @@ Region zero_lines(const Grid& grid, const std::vector<float>& field) {
         return edge % 2 ? grid.node(x, y + s) : grid.node(x + s, y);
     };
     std::vector<std::size_t> starts;
+    starts.reserve(next.size());
     for (const auto& [from, to] : next) starts.push_back(from);
     std::sort(starts.begin(), starts.end());
     Region region;

@@ -175,6 +175,7 @@ std::vector<Plane> cutting_planes(const FilmMesh& film, std::uint32_t label, con
         return a.sharp != b.sharp ? a.sharp : a.cost < b.cost;
     });
     std::vector<Plane> planes;
+    planes.reserve(candidates.size());
     for (const Candidate& c : candidates) planes.push_back(c.plane);
     return planes;
 }
@@ -363,6 +364,7 @@ class Cutting {
             return a.azimuth != b.azimuth ? a.azimuth < b.azimuth : a.height > b.height;
         });
         std::vector<Panel> ordered;
+        ordered.reserve(places.size());
         for (const Place& p : places) ordered.push_back(std::move(*p.panel));
         return ordered;
     }

@@ -152,6 +152,7 @@ std::vector<Footprint> footprints_of(const Piece& piece, const SheetOptions& opt
         for (int k = 0; k < 4; ++k) angles.push_back(0.5 * std::numbers::pi * k - std::atan2(box.s, box.c));
     }
     std::vector<Footprint> all;
+    all.reserve(angles.size());
     for (const double angle : angles) all.push_back(footprint_of(piece, angle, printed_bleed(options)));
     return all;
 }

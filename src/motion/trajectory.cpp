@@ -174,6 +174,7 @@ class Planner {
   private:
     static std::vector<Waypoint> poses_of(const std::vector<brush::Pose>& poses) {
         std::vector<Waypoint> points;
+        points.reserve(poses.size());
         for (const brush::Pose& p : poses) points.push_back({p, Vec3(0)});
         return points;
     }
