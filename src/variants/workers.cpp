@@ -41,6 +41,7 @@ class Worker {
         if (::pipe2(ends, O_CLOEXEC) != 0) throw Error(Message("no pipe: {}", system_message(errno)));
         pipe_ = ends[0];
         std::vector<char*> arguments;
+        arguments.reserve(command.size() + 1);
         for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
         arguments.push_back(nullptr);
         posix_spawn_file_actions_t files;
