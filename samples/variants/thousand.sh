@@ -56,7 +56,7 @@ END
 # All but the seconds.
 table() { python3 -c 'import csv, sys
 for row in csv.reader(open(sys.argv[1])): print([v for i, v in enumerate(row) if i != 17])' "$1/table.csv"; }
-finished() { ls "$out/killed/results" 2>/dev/null | wc -l; }
+finished() { { find "$out/killed/results" -mindepth 1 -maxdepth 1 2>/dev/null || true; } | wc -l; }
 "$tuft" variants "$out/plan.toml" -o "$out/by-1" --run --quiet --threads 1 >/dev/null &
 "$tuft" variants "$out/plan.toml" -o "$out/killed" --quiet >/dev/null
 all=$(ls "$out/killed/tasks" | wc -l)
@@ -70,7 +70,7 @@ for run in 1 2 3; do
     [ $run -lt 3 ] && [ "$n" -ge $((run * all / 3)) ] && break
     [ "$n" -ge $next ] || continue
     next=$((n + 20))
-    worker=$(ps -o pid= --ppid $parent | shuf -n 1)
+    worker=$(ps -o pid= --ppid $parent | shuf -n 1 || true)
     [ -z "$worker" ] || { kill -KILL $worker 2>/dev/null && kills=$((kills + 1)); } || true
   done
   [ $run = 3 ] || kill -KILL $parent 2>/dev/null || true
