@@ -211,6 +211,7 @@ TEST(Area, IsTheSameForAnyNumberOfThreadsAndFromItsText) {
     a.placed = true;
     a.upright = "number";
     a.upright_centre = {0.001, 0.002};
+    a.lines = {{{-0.01, 0}, {0.003, 0.0001}, {0.0097, 0}}, {{0, 0.001}}};
     JournalEntry entry{fill_of_area(a)};
     std::uint64_t hashes[3];
     for (int i = 0; i < 3; ++i) {

@@ -60,6 +60,7 @@ struct PaintedPart {
     SvgPicturePtr picture;
     double opacity = 1;
     const SvgShape* shape = nullptr;
+    std::vector<SvgLine> lines = {};  // of a stroke
 };
 
 std::vector<Ring> moved(std::vector<SvgLine> lines, const SvgMatrix& matrix) {
@@ -73,7 +74,7 @@ std::vector<PaintedPart> parts_of(const SvgShape& s, double unit, double toleran
     std::vector<PaintedPart> parts;
     if (!s.style.visible) return parts;
     const auto add = [&](const SvgPaint& paint, const SvgGradientPtr& gradient, double opacity, auto rings,
-                         FillRule rule) {
+                         FillRule rule, auto lines) {
         if (!paint.paints_colours() || (paint.kind == SvgPaint::Kind::gradient && !gradient)) return;
         PaintedPart part{
             .rule = rule, .colour = paint.value, .gradient = gradient, .opacity = s.opacity * opacity, .shape = &s};
@@ -81,17 +82,21 @@ std::vector<PaintedPart> parts_of(const SvgShape& s, double unit, double toleran
         if (part.opacity < kSeen) return;
         part.rings = rings();
         std::erase_if(part.rings, [](const Ring& r) { return r.size() < 3; });
-        if (!part.rings.empty()) parts.push_back(std::move(part));
+        if (part.rings.empty()) return;
+        part.lines = lines();
+        parts.push_back(std::move(part));
     };
     if (s.picture) {
         parts.push_back({.rings = moved(s.lines, s.matrix), .picture = s.picture, .opacity = s.opacity, .shape = &s});
         return parts;
     }
     add(
-        s.style.fill, s.fill_gradient, s.style.fill_opacity, [&] { return moved(s.lines, s.matrix); }, s.style.rule);
+        s.style.fill, s.fill_gradient, s.style.fill_opacity, [&] { return moved(s.lines, s.matrix); }, s.style.rule,
+        [] { return std::vector<SvgLine>(); });
     add(
         s.style.stroke, s.stroke_gradient, s.style.stroke_opacity,
-        [&] { return svg_stroke_outline(s, unit, tolerance); }, FillRule::nonzero);
+        [&] { return svg_stroke_outline(s, unit, tolerance); }, FillRule::nonzero,
+        [&] { return moved(s.lines, s.matrix); });
     return parts;
 }
 
@@ -168,7 +173,7 @@ class AreaMaker {
     void add(const PaintedPart& part) {
         check_interrupt();
         const SvgShape& s = *part.shape;
-        const auto whole = [&] { emit(part, part.rings, part.rule == FillRule::even_odd, 1, nullptr); };
+        const auto whole = [&] { emit(part, part.rings, part.lines, part.rule == FillRule::even_odd, 1, nullptr); };
         const bool past_page = is_past_page(part.rings);
         if (s.clips.empty() && s.masks.empty() && !past_page) return whole();
         std::size_t n = 0;
@@ -183,7 +188,9 @@ class AreaMaker {
         std::vector<MaskPiece> pieces{{std::move(region), 1, 1, nullptr}};
         for (const std::size_t k : s.masks) pieces = masked(std::move(pieces), scene_.masks[k]);
         for (const MaskPiece& piece : pieces)
-            if (!piece.region.empty()) emit(part, piece.region.rings(), false, piece.value, piece.fade);
+            if (!piece.region.empty())
+                emit(part, piece.region.rings(), pieces.size() == 1 ? part.lines : std::vector<SvgLine>(), false,
+                     piece.value, piece.fade);
     }
 
     // What lies beside the page is not seen in any viewer.
@@ -251,12 +258,14 @@ class AreaMaker {
         return fade;
     }
 
-    void emit(const PaintedPart& part, std::vector<Ring> rings, bool even_odd, double value,
+    void emit(const PaintedPart& part, std::vector<Ring> rings, std::vector<SvgLine> lines, bool even_odd, double value,
               const SvgGradientPtr& fade) {
-        for (const Ring& ring : rings) n_points_ += ring.size();
+        for (const auto* paths : {&rings, &lines})
+            for (const auto& path : *paths) n_points_ += path.size();
         if (n_points_ > stroke::kMaxAreaPoints) throw Error(source_, "the drawing has too many points");
         stroke::FlatArea area{.rings = std::move(rings),
                               .even_odd = even_odd,
+                              .lines = std::move(lines),
                               .placement = {},
                               .upright = part.shape->upright,
                               .stops = {}};

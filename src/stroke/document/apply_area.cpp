@@ -143,12 +143,19 @@ double AreaRaster::mean(const Vec2& point, double width) const {
            (at(point + Vec2(-d, -d)) + at(point + Vec2(d, -d)) + at(point + Vec2(-d, d)) + at(point + Vec2(d, d)));
 }
 
+AreaRaster raster_of(const FlatArea& area, const SurfaceLattice& lattice, double cell) {
+    if (area.lines.empty() || lattice.at.empty()) return AreaRaster(area, cell);
+    FlatArea even = area;
+    even.rings = even_rings(area, lattice);
+    return AreaRaster(even, cell);
+}
+
 FillResult apply_area(const Fill& fill, const PaintTarget& target, const FlatTexels& texels,
                       std::span<const ink::Mix> mixes, std::span<const double> films) {
     const FlatArea& area = *fill.area;
     const atlas::TexelMap& map = target.model.texels;
     const double width = map.texel_size;
-    const AreaRaster raster(area, 0.5 * width);
+    const AreaRaster raster = raster_of(area, texels.lattice(), 0.5 * width);
     const Vec2f low(raster.low() - width), high(raster.high() + width);
     std::vector<const FlatTexels::Tile*> tiles;
     for (const FlatTexels::Tile& tile : texels.tiles())

@@ -30,6 +30,9 @@ class AreaRaster {
     std::vector<std::uint8_t> coverage_;  // [width_ height_], 255 is 1
 };
 
+/// Returns the coverage of an area whose lines have their drawn width on the surface of `lattice` (`even_rings`).
+AreaRaster raster_of(const FlatArea& area, const SurfaceLattice& lattice, double cell);
+
 /// Puts the area of `fill` onto the texels that it covers. With c the coverage of a texel, α the opacity there and w
 /// the film of the stop, α c of all ink on the texel is taken away and c w film units of the stop's ink are laid.
 /// Between stops α, w and amounts of pigments are linear. `mixes`: one for each stop, by plane of the canvas; `films`:

@@ -14,14 +14,19 @@ int parts_of(const Vec2& a, const Vec2& b, double curvature, double width) {
     return static_cast<int>(std::clamp(std::ceil(glm::distance(a, b) / longest), 1.0, 1000.0));
 }
 
-void bend_ring(std::vector<Vec2>& ring, double curvature, double width) {
+void bend_path(std::vector<Vec2>& path, bool closed, double curvature, double width) {
     std::vector<Vec2> out;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        const Vec2 &a = ring[i], &b = ring[(i + 1) % ring.size()];
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const bool last = !closed && i + 1 == path.size();
+        const Vec2 &a = path[i], &b = last ? a : path[(i + 1) % path.size()];
         const int n = parts_of(a, b, curvature, width);
         for (int k = 0; k < n; ++k) out.push_back(bend_point(glm::mix(a, b, static_cast<double>(k) / n), curvature));
     }
-    ring = std::move(out);
+    path = std::move(out);
+}
+
+void bend_ring(std::vector<Vec2>& ring, double curvature, double width) {
+    bend_path(ring, true, curvature, width);
 }
 
 bool is_flat(double curvature, double width) {
@@ -66,6 +71,7 @@ void bend_samples(StrokeSamples& trace, double curvature, double width) {
 void bend_area(FlatArea& area, double curvature, double width) {
     if (is_flat(curvature, width)) return;
     for (auto& ring : area.rings) bend_ring(ring, curvature, width);
+    for (auto& line : area.lines) bend_path(line, false, curvature, width);
     Vec2 low(HUGE_VAL), high(-HUGE_VAL);
     for (const auto& ring : area.rings)
         for (const Vec2& p : ring) low = glm::min(low, p), high = glm::max(high, p);

@@ -58,8 +58,9 @@ void move_area(FlatArea& area, const ModelMotion& motion) {
     if (std::abs(scale - 1) > kSameScale) transform_area(area, Vec2(0), scale);
     if (!stretches(motion)) return;
     const Mat2 rest = without_scale(map);
-    for (auto& ring : area.rings)
-        for (Vec2& p : ring) p = rest * p;
+    for (auto* paths : {&area.rings, &area.lines})
+        for (auto& path : *paths)
+            for (Vec2& p : path) p = rest * p;
     area.low = rest * area.low, area.high = rest * area.high, area.upright_centre = rest * area.upright_centre;
     auto& a = area.to_unit;
     const Mat2 unit = Mat2(a[0], a[1], a[2], a[3]) * glm::inverse(rest);

@@ -33,6 +33,24 @@ Vec2 pair_in(const json& j) {
     const auto p = j.get<std::array<double, 2>>();
     return {p[0], p[1]};
 }
+json json_of(const std::vector<std::vector<Vec2>>& paths) {
+    json j = json::array();
+    for (const auto& path : paths) {
+        json& points = j.emplace_back(json::array());
+        for (const Vec2& p : path) points.push_back(p.x), points.push_back(p.y);
+    }
+    return j;
+}
+std::vector<std::vector<Vec2>> paths_in(const json& j) {
+    std::vector<std::vector<Vec2>> paths;
+    for (const json& points : j) {
+        if (!points.is_array() || points.size() % 2 != 0) throw Error("an area of the journal cannot be read");
+        auto& path = paths.emplace_back();
+        for (std::size_t i = 0; i < points.size(); i += 2)
+            path.emplace_back(points[i].get<double>(), points[i + 1].get<double>());
+    }
+    return paths;
+}
 Vec3 triple_in(const json& j) {
     const auto v = j.get<std::array<double, 3>>();
     return {v[0], v[1], v[2]};
@@ -110,11 +128,12 @@ void check_stop(const AreaStop& stop, double before) {
 
 void check_area(const FlatArea& area) {
     std::size_t n = 0;
-    for (const auto& ring : area.rings) {
-        n += ring.size();
-        for (const Vec2& p : ring)
-            if (!within(p)) throw Error("a point of an area lies out of range");
-    }
+    for (const auto* paths : {&area.rings, &area.lines})
+        for (const auto& path : *paths) {
+            n += path.size();
+            for (const Vec2& p : path)
+                if (!within(p)) throw Error("a point of an area lies out of range");
+        }
     if (n > kMaxAreaPoints) throw Error("an area has too many points");
     if (area.stops.empty() || area.stops.size() > kMaxAreaStops) throw Error("an area has no ink, or too many stops");
     double before = 0;
@@ -148,8 +167,9 @@ void transform_area(FlatArea& area, const Vec2& centre, double scale, bool mirro
         p = scale * (p - centre);
         p.x *= sign;
     };
-    for (auto& ring : area.rings)
-        for (Vec2& p : ring) move(p);
+    for (auto* paths : {&area.rings, &area.lines})
+        for (auto& path : *paths)
+            for (Vec2& p : path) move(p);
     move(area.low);
     move(area.high);
     move(area.upright_centre);
@@ -164,11 +184,8 @@ void transform_area(FlatArea& area, const Vec2& centre, double scale, bool mirro
 
 json json_of(const FlatArea& area) {
     json j;
-    json& rings = j["rings"] = json::array();
-    for (const auto& ring : area.rings) {
-        json& points = rings.emplace_back(json::array());
-        for (const Vec2& p : ring) points.push_back(p.x), points.push_back(p.y);
-    }
+    j["rings"] = json_of(area.rings);
+    if (!area.lines.empty()) j["lines"] = json_of(area.lines);
     if (area.even_odd) j["even_odd"] = true;
     const Placement& place = area.placement;
     const auto triple = [](const Vec3& v) { return json::array({v.x, v.y, v.z}); };
@@ -210,12 +227,8 @@ FlatArea area_of_text(const std::string& text) {
 FlatArea flat_area_of(const json& j) {
     FlatArea area;
     try {
-        for (const json& points : j.at("rings")) {
-            if (!points.is_array() || points.size() % 2 != 0) throw Error("an area of the journal cannot be read");
-            auto& ring = area.rings.emplace_back();
-            for (std::size_t i = 0; i < points.size(); i += 2)
-                ring.emplace_back(points[i].get<double>(), points[i + 1].get<double>());
-        }
+        area.rings = paths_in(j.at("rings"));
+        if (j.contains("lines")) area.lines = paths_in(j.at("lines"));
         area.even_odd = j.value("even_odd", false);
         area.placement.origin = triple_in(j.at("origin"));
         area.placement.right = triple_in(j.at("right"));

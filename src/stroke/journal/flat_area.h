@@ -57,6 +57,9 @@ inline constexpr int kMaxAreaSide = 1024;  ///< pixels, of a picture
 struct FlatArea {
     std::vector<std::vector<Vec2>> rings;  ///< closed: the last point is joined to the first
     bool even_odd = false;                 ///< rule for what the rings enclose; else nonzero
+    /// Of what is drawn as lines: their middles, open. A draped line is as wide on the model as it is drawn
+    /// (surface/even_lines.h). Empty: a shape of its own.
+    std::vector<std::vector<Vec2>> lines = {};
     Placement placement;
     bool placed = false;  ///< the file gives a placement
     AreaEdges edges = AreaEdges::facing;
@@ -76,7 +79,8 @@ struct FlatArea {
 inline constexpr std::size_t kMaxAreaPoints = 2'000'000;
 inline constexpr std::size_t kMaxAreaStops = 1000;
 
-/// Throws `Error` for points out of range, more than the limits, no stop, and parameters that are no numbers.
+/// Throws `Error` for points out of range, more than the limits, no stop, and parameters that are no numbers. Points of
+/// lines count with those of rings.
 void check_area(const FlatArea& area);
 
 /// Returns t at a flat point, in [0, 1] after the spread. Of a picture the mean over a square of side `width` metres,

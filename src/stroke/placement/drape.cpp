@@ -118,11 +118,12 @@ double drape_radius(const mesh::TriangleMesh& mesh) {
     return std::min(0.008, 0.04 * mesh.bounds.diagonal());
 }
 
-SurfaceTrace map_draped(const SurfaceQuery& query, const StrokeSamples& trace) {
+SurfaceTrace map_draped(const SurfaceQuery& query, const StrokeSamples& trace, std::vector<Vec3>* over) {
     Drape drape(query, trace.placement);
     SurfaceTrace mapped;
     mapped.origin_gap = drape.origin_gap();
     mapped.samples.reserve(trace.samples.size());
+    if (over) over->clear();
     for (const StrokeSample& s : trace.samples) {
         check_interrupt();
         SurfaceSample out = drape.at(Vec2(s.position));
@@ -131,6 +132,7 @@ SurfaceTrace map_draped(const SurfaceQuery& query, const StrokeSamples& trace) {
         out.pressure = hand.pressure;
         out.tilt = hand.tilt;
         out.roll = hand.roll;
+        if (over) over->push_back(out.position);
         const double up = clearance(query, out.position, out.normal, drape.radius());
         if (const auto hit = exact_ray(query, out.position + up * out.normal, -out.normal, up + drape.radius())) {
             out.on = *hit;

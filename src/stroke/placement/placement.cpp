@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "stroke/gesture/tractrix.h"
 #include "stroke/placement/holder.h"
@@ -61,8 +62,11 @@ brush::Pose pose_holder(const Vec3& place, double height, const HolderPose& held
     return pose;
 }
 
+namespace {
+
+/// `lifted`: flags of samples over which the brush is carried as high as they lie, whatever is below; may be empty.
 std::vector<brush::Pose> pose_holder(const mesh::SurfaceQuery& query, std::span<const SurfaceSample> samples,
-                                     const HolderOptions& options) {
+                                     const HolderOptions& options, const std::vector<bool>& lifted) {
     std::vector<brush::Pose> poses;
     poses.reserve(samples.size());
     const std::vector<double> along = travelled(samples, kTremble * options.steady);
@@ -73,7 +77,7 @@ std::vector<brush::Pose> pose_holder(const mesh::SurfaceQuery& query, std::span<
         const LevelledSurface& level = levelled[i];
         const Axes axes = axes_across(level.normal, s.right, s.down);
         const Vec3 ahead = s.tip_lag.x * axes.right + s.tip_lag.y * axes.down;
-        double height = level.height;
+        double height = lifted.empty() || !lifted[i] ? level.height : 0;
         // A tuft that has not trailed yet touches where the hand is.
         if (const double tip_lag = glm::length(s.tip_lag); along[i] < tip_lag)
             height += (1 - along[i] / tip_lag) * rise(query, s.position, ahead, level.normal, options.steady);
@@ -81,6 +85,13 @@ std::vector<brush::Pose> pose_holder(const mesh::SurfaceQuery& query, std::span<
                                     {level.normal, axes.right, axes.down, depths[i], s.tilt, s.roll, s.time}, options));
     }
     return poses;
+}
+
+}  // namespace
+
+std::vector<brush::Pose> pose_holder(const mesh::SurfaceQuery& query, std::span<const SurfaceSample> samples,
+                                     const HolderOptions& options) {
+    return pose_holder(query, samples, options, {});
 }
 
 std::vector<brush::Pose> spatial_poses(const StrokeSamples& trace) {
@@ -111,6 +122,31 @@ void keep_rolls_to_path(std::span<const StrokeSample> flat, std::span<SurfaceSam
         if (!(glm::length(drawn) > 0.1 * kWayLength) || !(glm::length(laid) > 0.1 * kWayLength)) continue;
         const double turn = std::atan2(drawn.x * laid.y - drawn.y * laid.x, glm::dot(drawn, laid));
         mapped[i].roll -= std::clamp(turn, -kMostTurn, kMostTurn);
+    }
+}
+
+/// Points of other sheets that the rays of a stroke's samples hit; nothing on its own sheet and where they hit none.
+using OtherSheets = std::vector<std::optional<Vec3>>;
+
+/// Keeps the hand from leading the ink over an edge with another sheet within `reach` (metres) behind it: the tuft
+/// would hang into the gap and touch that. At the edge the tip is over it.
+void shorten_leads(const std::vector<bool>& left, const OtherSheets& others, double reach,
+                   std::span<SurfaceSample> mapped) {
+    const double never = std::numeric_limits<double>::infinity();
+    double edge = never, other = never;  // metres of path to the edge ahead, and from there to what is behind it
+    for (std::size_t i = left.size(); i-- > 0;) {
+        SurfaceSample& s = mapped[i];
+        const double gone = i + 1 < left.size() ? glm::distance(s.position, mapped[i + 1].position) : 0;
+        if (left[i]) {
+            const bool near = others[i] && glm::distance(s.position, *others[i]) < reach;
+            const bool last = i + 1 == left.size() || !left[i + 1];
+            other = near ? 0 : last ? never : other + gone;
+            continue;
+        }
+        // The last step off the sheet is also one up: the edge is beside the last sample.
+        if (i + 1 < left.size()) edge = left[i + 1] ? 0 : edge + gone;
+        const double tip_lag = glm::length(s.tip_lag);
+        if (edge < tip_lag && other < reach) s.tip_lag *= edge / tip_lag;
     }
 }
 
@@ -156,12 +192,20 @@ HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& trace, 
         ink.samples[i].position = trace.samples[own].position;
     }
     path.mapped = map_to_surface(query, ink);
+    OtherSheets others;
+    for (const SurfaceSample& s : path.mapped.samples)
+        others.push_back(s.on_surface ? std::optional(s.position) : std::nullopt);
     const std::vector<bool> left = leave_other_sheets(query, ink, path.mapped);
     keep_rolls_to_path(ink.samples, path.mapped.samples);
     for (std::size_t i = 0; i < ink.samples.size(); ++i)
         path.mapped.samples[i].tip_lag = Vec2(lifted.samples[i].position - ink.samples[i].position);
+    // Hair is thicker than its tip: over another sheet it is carried twice as high.
+    const Vec3 outward = glm::normalize(glm::cross(trace.placement.down, trace.placement.right));
+    for (std::size_t i = 0; i < left.size(); ++i)
+        if (left[i]) path.mapped.samples[i].position += options.hover * outward;
+    shorten_leads(left, others, options.tuft_length, path.mapped.samples);
     lift_off_sheet(left, path.mapped.samples);
-    path.poses = pose_holder(query, path.mapped.samples, options);
+    path.poses = pose_holder(query, path.mapped.samples, options, left);
     return path;
 }
 

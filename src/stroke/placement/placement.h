@@ -125,8 +125,8 @@ struct HandPath {
     std::size_t set_down = 0;  ///< poses before that of the trace's first sample
 };
 /// Returns the poses of a trace: of a flat one after `compensate_tip_lag`, `lift_off`, `map_to_surface`,
-/// `leave_other_sheets` and `pose_holder`; of one in space its own. The brush is lifted where a stroke has left its
-/// sheet. Where it comes back, the brush is pressed over a path as long as its tip lag.
+/// `leave_other_sheets` and `pose_holder`; of one in space its own. The brush is lifted where a stroke leaves its
+/// sheet, its tip over the edge where another sheet is near, and pressed over its tip lag where the stroke comes back.
 HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& trace, const HolderOptions& options);
 
 }  // namespace tuft::stroke

@@ -30,7 +30,8 @@ std::optional<mesh::SurfacePoint> exact_ray(const mesh::SurfaceQuery& query, con
 /// Returns a surface sample with the time, pressure and tilt of a flat one.
 SurfaceSample hand_data(const StrokeSample& sample);
 
-/// `SurfaceMapping::drape` of `map_to_surface`.
-SurfaceTrace map_draped(const mesh::SurfaceQuery& query, const StrokeSamples& trace);
+/// `SurfaceMapping::drape` of `map_to_surface`. `over`, where given, becomes the samples' points on the smoothed
+/// surface, metres: they do not dip into grooves.
+SurfaceTrace map_draped(const mesh::SurfaceQuery& query, const StrokeSamples& trace, std::vector<Vec3>* over = nullptr);
 
 }  // namespace tuft::stroke

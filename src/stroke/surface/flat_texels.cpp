@@ -21,7 +21,8 @@ constexpr double kGapFacing = 0.9;              // cosine between the normals at
 constexpr double kCutHeight = 0.25;             // of the grid's reach, off its surface
 constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
 
-/// The drawing's rectangle on the surface, as nodes of a grid.
+/// The drawing's rectangle on the surface, as nodes of a grid. A draped one lies on the smoothed surface: nodes that
+/// dip into a shut line would bend all cells around it.
 class SurfaceGrid {
   public:
     SurfaceGrid(const mesh::SurfaceQuery& surface, const FlatFrame& frame) {
@@ -36,7 +37,12 @@ class SurfaceGrid {
         StrokeSamples nodes{.placement = frame.placement};
         for (int j = 0; j < n_[1]; ++j)
             for (int i = 0; i < n_[0]; ++i) nodes.samples.push_back({.position = Vec3(low_ + step_ * Vec2(i, j), 0)});
-        nodes_ = map_to_surface(surface, nodes).samples;
+        if (frame.placement.mapping == SurfaceMapping::drape) {
+            nodes_ = map_draped(surface, nodes, &over_).samples;
+        } else {
+            nodes_ = map_to_surface(surface, nodes).samples;
+            for (const SurfaceSample& s : nodes_) over_.push_back(s.position);
+        }
         if (frame.edges == AreaEdges::cut) keep_connected();
         build_mesh();
     }
@@ -48,6 +54,11 @@ class SurfaceGrid {
     const Box& bounds() const { return mesh_.bounds; }
     const mesh::SurfaceQuery& query() const { return *query_; }
     Vec2 flat(const Vec2& cell) const { return low_ + step_ * cell; }
+    SurfaceLattice lattice() const {
+        SurfaceLattice out{low_, step_, n_[0], n_[1], over_, {}};
+        for (const SurfaceSample& s : nodes_) out.on_surface.push_back(s.on_surface);
+        return out;
+    }
 
     /// Place in cells of a point of the mesh.
     Vec2 cell_of(const mesh::SurfacePoint& at) const {
@@ -60,6 +71,7 @@ class SurfaceGrid {
     struct Foot {
         Vec2 cell{0};
         Vec3 offset{0}, normal{0, 0, 1};  ///< from the foot to the point; unit
+        double lowest = 0, highest = 0;   ///< of the surface at the nodes around, along the normal, metres
     };
     std::optional<Foot> foot(const Vec3& p, Vec2 cell) const {
         constexpr int kSteps = 8;
@@ -70,18 +82,26 @@ class SurfaceGrid {
             const double u = cell.x - i, v = cell.y - j;
             const SurfaceSample &a = node(i, j), &b = node(i + 1, j), &c = node(i, j + 1), &d = node(i + 1, j + 1);
             if (!(a.on_surface || b.on_surface || c.on_surface || d.on_surface)) return {};
-            const Vec3 x = glm::mix(glm::mix(a.position, b.position, u), glm::mix(c.position, d.position, u), v);
-            const Vec3 du = glm::mix(b.position - a.position, d.position - c.position, v);
-            const Vec3 dv = glm::mix(c.position - a.position, d.position - b.position, u);
+            const Vec3 &pa = over_[index(i, j)], &pb = over_[index(i + 1, j)], &pc = over_[index(i, j + 1)],
+                       &pd = over_[index(i + 1, j + 1)];
+            const Vec3 x = glm::mix(glm::mix(pa, pb, u), glm::mix(pc, pd, u), v);
+            const Vec3 du = glm::mix(pb - pa, pd - pc, v);
+            const Vec3 dv = glm::mix(pc - pa, pd - pb, u);
             const Vec3 off = p - x;
             const double uu = glm::dot(du, du), uv = glm::dot(du, dv), vv = glm::dot(dv, dv), det = uu * vv - uv * uv;
             if (!(det > 1e-6 * uu * vv)) return {};
             const double x1 = glm::dot(off, du), x2 = glm::dot(off, dv);
             const Vec2 change((vv * x1 - uv * x2) / det, (uu * x2 - uv * x1) / det);
-            if (std::max(std::abs(change.x), std::abs(change.y)) < 1e-4)
-                return Foot{
+            if (std::max(std::abs(change.x), std::abs(change.y)) < 1e-4) {
+                Foot foot{
                     cell + change, off,
                     glm::normalize(glm::mix(glm::mix(a.normal, b.normal, u), glm::mix(c.normal, d.normal, u), v))};
+                const auto range =
+                    std::minmax({glm::dot(a.position - pa, foot.normal), glm::dot(b.position - pb, foot.normal),
+                                 glm::dot(c.position - pc, foot.normal), glm::dot(d.position - pd, foot.normal)});
+                foot.lowest = range.first, foot.highest = range.second;
+                return foot;
+            }
             cell += glm::clamp(change, Vec2(-2), Vec2(2));
         }
         return {};
@@ -104,6 +124,7 @@ class SurfaceGrid {
         const std::vector<char> kept = find_connected();
         // A node beside them continues their surface, so that texels up to the rim have a place on the grid.
         const std::vector<SurfaceSample> found = nodes_;
+        const std::vector<Vec3> over = over_;
         for (int j = 0; j < n_[1]; ++j)
             for (int i = 0; i < n_[0]; ++i) {
                 if (kept[index(i, j)]) continue;
@@ -111,10 +132,11 @@ class SurfaceGrid {
                 for (const auto& [x, y] : kAround) {
                     if (!inside(i + 2 * x, j + 2 * y) || !kept[index(i + x, j + y)]) continue;
                     const SurfaceSample &near = found[index(i + x, j + y)], &far = found[index(i + 2 * x, j + 2 * y)];
-                    const Vec3 on = kept[index(i + 2 * x, j + 2 * y)]
-                                        ? near.position - far.position
-                                        : step_.x * double(-x) * near.right + step_.y * double(-y) * near.down;
-                    nodes_[index(i, j)].position = near.position + on;
+                    const bool goes_on = kept[index(i + 2 * x, j + 2 * y)];
+                    const Vec3 on = step_.x * double(-x) * near.right + step_.y * double(-y) * near.down;
+                    nodes_[index(i, j)].position = near.position + (goes_on ? near.position - far.position : on);
+                    const Vec3 &over_near = over[index(i + x, j + y)], &over_far = over[index(i + 2 * x, j + 2 * y)];
+                    over_[index(i, j)] = over_near + (goes_on ? over_near - over_far : on);
                     nodes_[index(i, j)].normal = near.normal;
                     break;
                 }
@@ -181,6 +203,7 @@ class SurfaceGrid {
     int n_[2] = {0, 0};
     Vec2 step_{0}, low_{0};
     std::vector<SurfaceSample> nodes_;
+    std::vector<Vec3> over_;  // the nodes on the surface that the drawing lies on; metres
     mesh::TriangleMesh mesh_;
     std::optional<mesh::SurfaceQuery> query_;
     double reach_ = 0;  // metres
@@ -211,7 +234,8 @@ class TileUnfolding {
   private:
     bool lies(const SurfaceGrid::Foot& foot, const Vec3& normal) const {
         const double height = glm::dot(foot.offset, foot.normal);
-        return glm::dot(normal, foot.normal) > facing_ && std::abs(height) <= highest_ &&
+        return glm::dot(normal, foot.normal) > facing_ && height >= foot.lowest - highest_ &&
+               height <= foot.highest + highest_ &&
                glm::length(foot.offset - height * foot.normal) <= slack_ + 0.2 * std::abs(height);
     }
 
@@ -275,6 +299,7 @@ FlatTexels::FlatTexels(const Model& model, const mesh::SurfaceQuery& surface, co
 void FlatTexels::unfold(const Model& model, const mesh::SurfaceQuery& surface) {
     const SurfaceGrid grid(surface, frame_);
     if (grid.empty()) return;
+    if (frame_.placement.mapping == SurfaceMapping::drape) lattice_ = grid.lattice();
     tiles_ = gather_tiles(model, [&](const atlas::TexelShape& shape, const atlas::TexelTile& in, Tile& out) {
         if (!reaches(grid, shape, in)) return false;
         TileUnfolding unfolding(grid, model.texels.texel_size, frame_.edges);

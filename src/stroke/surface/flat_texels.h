@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "stroke/journal/flat_area.h"
+#include "stroke/surface/even_lines.h"
 #include "stroke/surface/model.h"
 
 /// \file
@@ -26,8 +27,10 @@ struct FlatFrame {
 /// The rectangle from `low` to `high` is mapped onto the surface (`map_to_surface`) at the nodes of a grid, at most 2
 /// mm and at most 1/32 of it apart, at most 400 by 400 nodes. A texel takes the coordinates of the nearest point of the
 /// grid, linear in each triangle. It is reached when that point lies within a grid step, on the same side of the
-/// surface, and not past the surface's border. With `SurfaceMapping::project` the coordinates are those of the texel's
-/// projection, and what is hidden is not reached.
+/// surface, and not past the surface's border. With `SurfaceMapping::drape` that grid lies on the smoothed surface, and
+/// a texel takes the coordinates over which it lies along the grid's normal: a shut line bends no line that passes it.
+/// With `SurfaceMapping::project` the coordinates are those of the texel's projection, and what is hidden is not
+/// reached.
 ///
 /// With `AreaEdges::cut` the nodes are connected from the one nearest to the placement's origin. Neighbours p, q with
 /// normals n, m are connected where min(|(q − p)·n|, |(q − p)·m|) ≤ |q − p| / 2: a step is no neighbour, a fold is.
@@ -50,12 +53,15 @@ class FlatTexels {
     /// Tiles with at least one texel that is reached, by ascending slot.
     std::span<const Tile> tiles() const { return tiles_; }
     const FlatFrame& frame() const { return frame_; }
+    /// The grid of a draped drawing; without nodes for other mappings.
+    const SurfaceLattice& lattice() const { return lattice_; }
 
   private:
     void project(const Model& model, const mesh::SurfaceQuery& surface);
     void unfold(const Model& model, const mesh::SurfaceQuery& surface);
 
     FlatFrame frame_;
+    SurfaceLattice lattice_;
     std::vector<Tile> tiles_;
 };
 
