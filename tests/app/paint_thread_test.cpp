@@ -211,5 +211,50 @@ TEST_F(PaintThreadTest, ALayerThatIsAskedForTwiceComesTwiceUnderTwoNames) {
     end();
 }
 
+// Poses in steps of a thousandth of a second, one a command.
+void post_poses(CommandQueue& queue, int n) {
+    for (int i = 0; i < n; ++i) {
+        const double time = 1e-3 * i;
+        queue.post(ExtendStroke{{brush::Pose{.time = time}}, time});
+    }
+}
+
+TEST(CommandQueue, JoinsPosesThatWaitUpToATimeAndNoOtherCommand) {
+    CommandQueue queue;
+    post_poses(queue, 50);
+    queue.post(EndStroke{});
+    post_poses(queue, 2);
+    Command command;
+    ASSERT_EQ(queue.wait(command, std::chrono::milliseconds(0)), CommandQueue::Next::command);
+    ExtendStroke& extend = std::get<ExtendStroke>(command);
+    EXPECT_TRUE(queue.join(extend, 0.0305));  // half a step more than 31 poses last
+    ASSERT_EQ(extend.poses.size(), 31u);
+    for (int i = 0; i < 31; ++i) EXPECT_EQ(extend.poses[static_cast<std::size_t>(i)].time, 1e-3 * i);
+    EXPECT_EQ(extend.requested_at, 1e-3 * 30);
+    ASSERT_EQ(queue.wait(command, std::chrono::milliseconds(0)), CommandQueue::Next::command);
+    EXPECT_FALSE(queue.join(std::get<ExtendStroke>(command), 1));
+    EXPECT_EQ(std::get<ExtendStroke>(command).poses.size(), 19u);
+    ASSERT_EQ(queue.wait(command, std::chrono::milliseconds(0)), CommandQueue::Next::command);
+    EXPECT_TRUE(std::holds_alternative<EndStroke>(command));
+    EXPECT_EQ(queue.waiting(), 3u);  // it, and the next stroke's poses
+}
+
+TEST_F(PaintThreadTest, PosesThatComeFasterThanTheirInkArePaintedAsTheHandMadeThem) {
+    painter_->post(BeginStroke{.brush = "wolf-small", .ink = "carbon", .persistent = false});
+    const std::vector<brush::Pose> poses = test::poses_above(painter_->model(), preset_, 0.02);
+    for (const brush::Pose& pose : poses) painter_->post(ExtendStroke{{pose}, 1 + pose.time});
+    painter_->post(EndStroke{});
+    painter_->wait_idle(100);
+    Update update = painter_->take();
+    EXPECT_EQ(update.status.progress.done, 1 + poses.back().time);
+    ASSERT_TRUE(update.events.strokes);
+    lines_ = std::move(*update.events.strokes);
+    expect_file_like_journal("as they came");
+    const std::vector<stroke::JournalEntry> kept = io::Project::open(folder_ / "work.tuft").strokes();
+    const std::vector<stroke::StrokeSample>& samples = kept.at(0).get<stroke::PaintStroke>().trace.samples;
+    ASSERT_EQ(samples.size(), poses.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) EXPECT_EQ(samples[i].time, poses[i].time);
+}
+
 }  // namespace
 }  // namespace tuft::app

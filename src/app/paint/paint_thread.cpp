@@ -14,6 +14,8 @@ namespace tuft::app {
 namespace {
 
 constexpr std::chrono::seconds kLookOutsideEvery{1};
+// Seconds of a hand that is ahead of its ink: so many poses are bent beside their deposit, and shown together.
+constexpr double kJoined = 1.0 / 30;
 
 }  // namespace
 
@@ -115,7 +117,7 @@ void PaintThread::perform(Command& command) {
     if (work.autosave.viewing() && changes_work(command))
         return outbox_.report("This project is only looked at; File > Save as... makes a copy to work on.");
     std::visit(Overloaded{[&](BeginStroke& c) { strokes_.begin(c); },
-                          [&](ExtendStroke& c) { strokes_.extend(c); },
+                          [&](ExtendStroke& c) { strokes_.extend(c, queue_.join(c, kJoined)); },
                           [&](EndStroke&) { strokes_.end(); },
                           [&](CancelStroke&) { strokes_.cancel(); },
                           [&](PaintDrawing& c) { strokes_.paint_drawing(c); },

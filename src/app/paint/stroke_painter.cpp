@@ -49,11 +49,14 @@ void StrokePainter::load_tip(const BeginStroke& command, std::size_t& made) {
     }
 }
 
-void StrokePainter::extend(const ExtendStroke& command) {
+void StrokePainter::extend(const ExtendStroke& command, bool goes_on) {
     if (!context_.work.document->session()) return;
     context_.work.document->extend(command.poses, [this] { context_.publisher.publish_if_due(); });
     context_.publisher.set_done(command.requested_at);
-    context_.publisher.publish();
+    if (goes_on)
+        context_.publisher.publish_if_due();
+    else
+        context_.publisher.publish();
 }
 
 void StrokePainter::end() {

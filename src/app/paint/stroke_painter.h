@@ -16,7 +16,8 @@ class StrokePainter {
     explicit StrokePainter(PaintContext& context) : context_(context) {}
 
     void begin(const BeginStroke& command);
-    void extend(const ExtendStroke& command);
+    /// `goes_on`: another command that extends the stroke comes next.
+    void extend(const ExtendStroke& command, bool goes_on);
     void end();
     /// Drops the current stroke, if any.
     void cancel();

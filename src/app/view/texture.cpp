@@ -11,6 +11,7 @@ namespace {
 
 using Rgba = std::array<std::uint8_t, 4>;
 
+constexpr std::size_t kTilesAtOnce = 8;                  // of one thread
 constexpr int kVeil = 42;                                // percent of the veil's colour
 constexpr std::array<int, 3> kVeilColour{64, 104, 178};  // sRGB
 constexpr int kRimTexels = 2;                            // charts lie further apart than that
@@ -93,20 +94,23 @@ void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke
     const atlas::TexelMap& map = painting.model().texels;
     const ink::Stack stack = painting.appearance().stack();
     const std::size_t size = colour_.size;
-    for (const std::uint32_t slot : slots) {
-        const std::size_t tile = map.tile_of_slot[slot];
-        const std::size_t x0 = tile % map.tiles_per_side * atlas::kTile, y0 = tile / map.tiles_per_side * atlas::kTile;
-        const bool inked = stack.touched(slot);
-        const ink::TileAppearance look =
-            inked ? ink::shade_tile(stack, slot, painting.appearance().substrate()) : ink::TileAppearance{};
-        const std::array<float, atlas::kTileTexels> wet =
-            wetness_ ? liquid_of(painting, slot) : std::array<float, atlas::kTileTexels>{};
-        for (std::size_t t = 0; t < atlas::kTileTexels; ++t) {
-            const std::size_t x = x0 + t % atlas::kTile, y = y0 + t / atlas::kTile;
-            if (x < size && y < size && map.tiles[slot].cluster[t] != atlas::kNoCluster)
-                height_[y * size + x] = code_of(wetness_ ? wet[t] : look.height[t]);
+    parallel_for(slots.size(), kTilesAtOnce, [&](std::size_t begin, std::size_t end) {
+        for (const std::uint32_t slot : slots.subspan(begin, end - begin)) {
+            const std::size_t tile = map.tile_of_slot[slot];
+            const std::size_t x0 = tile % map.tiles_per_side * atlas::kTile,
+                              y0 = tile / map.tiles_per_side * atlas::kTile;
+            std::array<float, atlas::kTileTexels> height{};
+            if (wetness_)
+                height = liquid_of(painting, slot);
+            else if (stack.touched(slot))
+                height = ink::shade_tile(stack, slot, painting.appearance().substrate(), false).height;
+            for (std::size_t t = 0; t < atlas::kTileTexels; ++t) {
+                const std::size_t x = x0 + t % atlas::kTile, y = y0 + t / atlas::kTile;
+                if (x < size && y < size && map.tiles[slot].cluster[t] != atlas::kNoCluster)
+                    height_[y * size + x] = code_of(height[t]);
+            }
         }
-    }
+    });
     for (const std::uint32_t slot : slots) continue_over_seams(height_, slot, painting);
 }
 
@@ -179,12 +183,7 @@ std::vector<render::TilePixels> Texture::show_marks(Marks marks, const stroke::D
     marks_of_tile_.clear();
     for (const auto& [slot, tile] : marks_) marks_of_tile_[map.tile_of_slot[slot]] = &tile;
     for (const auto& [tile, fresh] : marks_of_tile_) changed.insert(tile);
-    std::vector<render::TilePixels> tiles;
-    for (const std::uint32_t index : changed) {
-        tiles.push_back(tile(index));
-        tiles.back().boxes = boxes_of(index, map);
-    }
-    return tiles;
+    return tiles_at(std::vector(changed.begin(), changed.end()), map);
 }
 
 void Texture::refresh_all(const stroke::Document& painting) {
@@ -248,27 +247,21 @@ render::MapPixels Texture::pixels() const {
 
 std::vector<render::TilePixels> Texture::refresh(std::span<const std::uint32_t> slots,
                                                  const stroke::Document& painting) {
-    std::vector<render::TilePixels> tiles;
-    if (slots.empty()) return tiles;
+    if (slots.empty()) return {};
     const stroke::Model& model = painting.model();
     const stroke::Appearance& shown = painting.appearance();
     const ink::ComposeOptions options = shown.compose_options();
     ink::refresh_srgb8(colour_, slots, shown.stack(), model.texels, shown.substrate(), options);
-    const ink::GutterPlan& plan = *options.seams;
     refresh_heights(slots, painting);
-    std::set<std::uint32_t> changed;
-    for (const std::uint32_t slot : slots) {
-        changed.insert(model.texels.tile_of_slot[slot]);
-        for (std::uint32_t e = plan.first_of_slot[slot]; e < plan.first_of_slot[slot + 1]; ++e) {
-            const std::uint32_t texel = plan.gutter.texels[plan.entries[e]];
-            changed.insert(texel / colour_.size / atlas::kTile * model.texels.tiles_per_side +
-                           texel % colour_.size / atlas::kTile);
-        }
-    }
-    for (const std::uint32_t index : changed) {
-        tiles.push_back(tile(index));
-        tiles.back().boxes = boxes_of(index, model.texels);
-    }
+    return tiles_at(ink::refreshed_tiles(slots, model.texels, options), model.texels);
+}
+
+std::vector<render::TilePixels> Texture::tiles_at(std::span<const std::uint32_t> indices, const atlas::TexelMap& map) {
+    std::vector<render::TilePixels> tiles(indices.size());
+    parallel_for(tiles.size(), kTilesAtOnce, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) tiles[i] = tile(indices[i]);
+    });
+    for (render::TilePixels& tile : tiles) tile.boxes = boxes_of(tile.tile, map);
     return tiles;
 }
 

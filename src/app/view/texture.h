@@ -51,6 +51,7 @@ class Texture {
     const std::vector<render::GlBox>& boxes_of(std::uint32_t tile, const atlas::TexelMap& map);
     void refresh_heights(std::span<const std::uint32_t> slots, const stroke::Document& painting);
     render::TilePixels tile(std::uint32_t index) const;
+    std::vector<render::TilePixels> tiles_at(std::span<const std::uint32_t> indices, const atlas::TexelMap& map);
     void continue_over_seams(std::vector<std::uint8_t>& values, std::uint32_t slot,
                              const stroke::Document& painting) const;
     std::array<std::uint8_t, 4> texel(std::size_t x, std::size_t y) const;

@@ -45,6 +45,20 @@ bool CommandQueue::interrupts() const {
     return closed_ || !queue_.empty();
 }
 
+bool CommandQueue::join(ExtendStroke& command, double seconds) {
+    const std::lock_guard lock(mutex_);
+    for (;;) {
+        ExtendStroke* next = queue_.empty() ? nullptr : std::get_if<ExtendStroke>(&queue_.front());
+        if (!next) return false;
+        std::vector<brush::Pose>& poses = command.poses;
+        if (!poses.empty() && !next->poses.empty() && next->poses.back().time - poses.front().time > seconds)
+            return true;
+        poses.insert(poses.end(), next->poses.begin(), next->poses.end());
+        command.requested_at = next->requested_at;
+        queue_.pop_front();
+    }
+}
+
 CommandQueue::Next CommandQueue::wait(Command& command, std::chrono::milliseconds patience) {
     std::unique_lock lock(mutex_);
     working_ = false;

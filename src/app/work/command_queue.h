@@ -35,6 +35,9 @@ class CommandQueue {
     /// `patience`. `closed`: none will come.
     enum class Next { command, nothing, closed };
     Next wait(Command& command, std::chrono::milliseconds patience);
+    /// Takes the `ExtendStroke`s that wait next, as far as their poses last no longer than `seconds` with those of
+    /// `command`, and appends them to it. Returns whether another one waits next. Paint thread.
+    bool join(ExtendStroke& command, double seconds);
 
   private:
     mutable std::mutex mutex_;

@@ -15,6 +15,7 @@ namespace tuft::app {
 namespace {
 
 constexpr double kPublishEvery = 0.012;  // seconds
+constexpr double kPublishRest = 3;       // times as long as publishing takes, for painting between
 
 double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -30,6 +31,7 @@ Publisher::Publisher(PaintWork& work, const EditHistory& history, Outbox& outbox
 }
 
 void Publisher::publish(bool journal_changed) {
+    const double begin = now();
     stroke::Document& document = *work_.document;
     const std::vector<std::uint32_t> dirty = document.appearance().take_dirty();
     thumbnails_.touch(dirty);
@@ -69,10 +71,11 @@ void Publisher::publish(bool journal_changed) {
                        .viewing = file.viewing()};
     });
     last_publish_ = now();
+    publish_seconds_ = last_publish_ - begin;
 }
 
 void Publisher::publish_if_due() {
-    if (now() - last_publish_ > kPublishEvery) publish();
+    if (now() - last_publish_ > std::max(kPublishEvery, kPublishRest * publish_seconds_)) publish();
 }
 
 // Entries that are still right stay; ids and order tell.

@@ -22,7 +22,7 @@ class Publisher {
 
     /// Sends changed tiles and the status; with `journal_changed` also the list of entries.
     void publish(bool journal_changed = false);
-    /// Calls `publish`, at most once per frame of the window.
+    /// Calls `publish`, at most once per frame of the window and for at most a quarter of the time.
     void publish_if_due();
     /// Sends the whole texture.
     void send_texture();
@@ -55,7 +55,7 @@ class Publisher {
     std::string brush_;
     bool on_palette_ = false;
     std::optional<std::array<std::uint8_t, 3>> brush_colour_;
-    double undo_seconds_ = 0, done_ = 0, last_publish_ = 0;
+    double undo_seconds_ = 0, done_ = 0, last_publish_ = 0, publish_seconds_ = 0;
 };
 
 }  // namespace tuft::app
