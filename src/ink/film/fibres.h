@@ -14,7 +14,7 @@ namespace tuft::ink::wet {
 
 /// Bundles of fibres in a sheet: bent lines of 1 to 2 mm, 0.15 mm wide. Where they lie and which way they run is a
 /// function of the place in space alone, so neither the layout of the atlas nor its seams matter; near a surface they
-/// are taken as they look along its normal. Not to be shared between threads: it keeps the fibres near the last place.
+/// are taken as they look along its normal. Not to be shared between threads: it keeps the fibres near the last places.
 class Fibres {
   public:
     /// `texel_size`, metres: fibres are as wide as a texel shows them, and fainter by as much.
@@ -29,12 +29,16 @@ class Fibres {
         double half, bend;
     };
     using Cell = std::array<std::int64_t, 3>;
+    /// The fibres that reach into a cell of the lattice.
+    struct Near {
+        bool known = false;
+        Cell cell{};
+        std::vector<Fibre> fibres;
+    };
     double width_, strength_;
-    Cell cell_;
-    bool known_ = false;
-    std::vector<Fibre> near_;
+    std::array<Near, 8> near_;  ///< of the last cells, by their parities
 
-    void gather(const Cell& cell);
+    const std::vector<Fibre>& near(const Vec3& position);
 };
 
 /// Relative ease with which liquid flows at places of a surface: exp(unevenness n), n noise of mean 0 and rms 1, −2 to

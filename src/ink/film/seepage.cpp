@@ -16,7 +16,7 @@ constexpr double kFreshStep = 0.05;  // seconds
 constexpr float kRounding = 1e-5f;
 constexpr float kMostNear = 8;         // of what smears between two texels, over that of whole texels side by side
 constexpr float kMostSmeared = 0.04f;  // of the lesser amount, times the link's weight
-constexpr float kHalfHeld = 0.1f;  // pigment over liquid at which fibres hold half of what they hold of thick ink
+constexpr float kHalfHeld = 0.1f;      // pigment over liquid at which fibres hold half of what they hold of thick ink
 constexpr Plane kDry{};
 
 /// Stages of a step in which (with one stage) `part` of a texel would leave it; kMostStages at most.
