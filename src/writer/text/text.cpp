@@ -118,10 +118,13 @@ Text TextReader::read(const TextRequest& request) {
     return text;
 }
 
-std::string group_of(std::string text) {
-    for (char& c : text)
-        if (c == '/' || c == '\n' || c == '\\') c = ' ';
-    return stroke::group_name(text);
+std::string group_of(std::string_view text) {
+    std::string name;
+    for (const std::u32string& line : lines_of(text)) {
+        if (!name.empty()) name += ' ';
+        for (const char32_t c : line) name += c == '/' || c == '\\' ? " " : utf8_of(c);
+    }
+    return stroke::group_name(name);
 }
 
 Vec2 extent_of(const Text& text) {

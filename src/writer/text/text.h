@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/system/disk_cache.h"
@@ -47,8 +48,9 @@ class TextReader {
     std::unique_ptr<GlyphSource> own_, bundled_;
 };
 
-/// Returns the name of the group of a text's strokes: the text without line breaks and slashes (`stroke::group_name`).
-std::string group_of(std::string text);
+/// Returns the name of the group of a text's strokes: its lines (`lines_of`) beside each other, without slashes
+/// (`stroke::group_name`).
+std::string group_of(std::string_view text);
 
 /// Returns width and height of the text's squares at a side of 1.
 Vec2 extent_of(const Text& text);
