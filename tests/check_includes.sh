@@ -46,6 +46,7 @@ pictures
 writer/glyphs
 writer/gesture
 writer/copy writer/fit writer/layout
+writer/text
 variants
 cli app/input app/text
 app/view

@@ -105,6 +105,13 @@ Spot snapped_spot(const stroke::Model& model, const Paint& a, const Spot& spot) 
     return {*at, glm::dot(at->normal, spot.normal) < 0 ? -at->normal : at->normal};
 }
 
+/// Scale of a drawing for a wanted width. One that has it stays as it is, to the bit.
+double scale_to(double wanted, double width) {
+    constexpr double kSame = 1e-12;
+    const double scale = wanted / width;
+    return std::abs(scale - 1) < kSame ? 1 : scale;
+}
+
 /// Which way up it is read.
 stroke::Placement placement_at(const Spot& spot, const Paint& a, bool project) {
     const double turn = a.place_turn_deg * kDegree;
@@ -155,7 +162,7 @@ std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& s
     Box area = stroke::extent_of(drawing);
     for (const stroke::FlatArea* part : areas) stroke::add_extent(area, *part);
     const double turn = a.place_turn_deg * kDegree, width = stroke::width_of(area);
-    double scale = a.place_width_mm > 0 && width > 0 ? a.place_width_mm * kMillimetre / width : 1;
+    double scale = a.place_width_mm > 0 && width > 0 ? scale_to(a.place_width_mm * kMillimetre, width) : 1;
     PlacedDrawing placed;
     const Vec2 size =
         std::abs(std::cos(turn)) * Vec2(area.size()) + std::abs(std::sin(turn)) * Vec2(area.size().y, area.size().x);

@@ -69,6 +69,7 @@ void move_in_space(stroke::StrokeSamples& trace, const Rigid& r, const Vec3& cen
 void shake_hand(stroke::StrokeSamples& trace, const Tolerance& t, std::uint64_t seed) {
     const int axes = trace.flat ? 2 : 3;
     std::vector<Wander> wander;
+    wander.reserve(static_cast<std::size_t>(axes));
     for (int i = 0; i < axes; ++i)
         wander.emplace_back(t.hand_mm * kMillimetre, t.hand_length_mm * kMillimetre,
                             hash_bits(seed, static_cast<std::uint64_t>(i)));

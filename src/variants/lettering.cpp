@@ -28,6 +28,7 @@ void letter(render::BrushCanvas& canvas, std::string_view text, const Vec2& at, 
     const double thickness[] = {std::max(1.0, kThickness * options.size)};
     for (const std::vector<Vec2>& line : decal::text_lines(text, Vec2(0), options.size)) {
         std::vector<Vec2> points;
+        points.reserve(line.size());
         for (const Vec2& p : line) points.push_back(at + Vec2(narrow * p.x, -p.y));
         render::stroke_line(canvas, points, thickness, options.colour);
     }

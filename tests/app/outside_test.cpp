@@ -281,7 +281,10 @@ TEST_F(TwoPrograms, ASecondWindowAsksAndItsViewFollowsTheFirst) {
                      // A button that acted would replace the palette's message.
                      "\nwait-ready\nkey p\nwait 0.2\nexpect message \"Pour inks\"\nclick Wash\nclick \"Rinse the "
                      "brush\"\nwait 0.3\nexpect message \"Pour inks\"\nopen ready.png\nwait 0.2\nexpect message "
-                     "\"only looked at\"\nkey p\nwait 0.2\nsave copy.tuft\nwait-ready\nstroke 46%,52% "
+                     "\"only looked at\"\nkey p\nwait 0.2\nset tool text\nset text \xe6\xb0\xb8\nwait-ready\nmove "
+                     "50%,54%\nwait 0.1\npress\nrelease\nwait-ready\nexpect strokes " +
+                     n(1) +
+                     "\nset tool brush\nsave copy.tuft\nwait-ready\nstroke 46%,52% "
                      "54%,56%\nwait-ready\nexpect strokes " +
                      n(2) + "\nexpect kept\n",
                  "two");

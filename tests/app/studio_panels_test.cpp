@@ -44,17 +44,21 @@ TEST_P(PanelsAt1280Times720, NothingNeededForPaintingScrolls) {
     std::ofstream(path("two.svg")) << "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path fill='none' "
                                       "stroke='black' stroke-width='1' d='M1 1 l7 7'/></svg>";
     std::string script = kBowl + "set language " + setting.language + "\nset scale " + std::to_string(setting.scale) +
-                         "\nset wet on\nset two-inks on\nopen " + path("two.svg") + "\nwait-ready\nwait 0.2\n";
+                         "\nset wet on\nset two-inks on\nset text \xe6\xb0\xb8\nopen " + path("two.svg") +
+                         "\nwait-ready\nwait 0.2\n";
     const auto expect = [&](std::initializer_list<const char*> labels) {
         for (const char* label : labels) script += "expect label \"" + std::string(label) + "\"\n";
     };
-    for (const char* tool : {"brush", "line", "curve", "eraser", "writing"}) {
+    for (const char* tool : {"brush", "line", "curve", "eraser", "writing", "text"}) {
         const std::string name = tool;
         script += "set tool " + name + "\nwait 0.2\n";
         expect({"Brush", "Mask", "Palette", "goat-small", "wolf-large", "Tuft size", "Pressure", "Stabiliser"});
         if (setting.scale == 1) expect({"fold Symmetry", "fold Look inside", "Undo", "Add a layer"});
         if (name == "line" || name == "curve") expect({"Press down in", "Lift in", "Pace"});
         if (name == "writing") expect({"Writing or drawing...", "Width", "Turn", "Drape", "Wrap", "Mirrored"});
+        if (name == "text")
+            expect({"Text", "Style", "Own brush", "Across", "Down", "Round", "Curve##direction",
+                    "Characters from...", "Snap", "Size", "Spacing", "Turn"});
         if (name == "brush" || name == "eraser") expect({"Speed lightens", "Rest deepens", "Clean ends"});
         if (name != "eraser")
             expect({"carbon", "water", "Colour...", "Wet ink", "1 min", "Dry", "Don't reload", "Another ink in the tip",

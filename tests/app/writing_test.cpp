@@ -5,13 +5,7 @@
 #include <fstream>
 
 #include "app/document/snapping.h"
-#include "app/paint/paint_thread.h"
-#include "io/strokes/inkml.h"
-#include "models.h"
-#include "paths.h"
-#include "projects.h"
-#include "stroke/journal/entry_json.h"
-#include "stroke/journal/recorded_journal.h"
+#include "both_programs.h"
 
 namespace tuft::app {
 namespace {
@@ -90,64 +84,24 @@ TEST(Writing, OptionsOfAnUprightPlaceHaveNoNegativeZero) {
     }
 }
 
-/// What the painter makes of a drawing: the hash of all texels, the project, and its journal.
-struct Painted {
-    std::string hash, words;
-    std::vector<stroke::JournalEntry> journal;
-};
-
 /// A shipped model with a drawing placed on it at the point that a ray from the outside meets.
-class WritingOnModel : public ::testing::Test {
+class WritingOnModel : public BothPrograms {
   protected:
     Painted by_studio(const std::string& name, const Writing& w, const Vec3& from, const Vec3& along, const Vec3& right,
                       const WritingHand& hand) {
-        const std::string project = folder_ + "/studio.tuft";
-        std::filesystem::remove(project);
-        PaintWork work;
-        work.model = std::make_unique<stroke::Model>(test::shipped_model(name, kTexels));
-        work.document = std::make_unique<stroke::Document>(*work.model);
-        work.texture = std::make_unique<Texture>(*work.document, ProgressFn{});
-        work.source = source_folder() + "/models/" + name;
-        EXPECT_TRUE(work.autosave.start(project, work.source, {}, *work.document).empty());
-        const mesh::SurfaceQuery& query = *work.model->query;
-        const auto at = query.ray(from, along);
-        EXPECT_TRUE(at);
-        const stroke::Placement placement = place_writing(w, query, at->position, -along, right, -along);
-        {
-            PaintThread painter(std::move(work));
-            painter.post(PaintDrawing{placed_writing(w, placement, hand), stroke::group_name(w.file)});
-            painter.wait_idle(600);
-        }
-        return {test::stored_hash(project), place_words(w, placement), io::Project::open(project).strokes()};
+        return BothPrograms::by_studio(name, [&](const mesh::SurfaceQuery& query) {
+            const auto at = query.ray(from, along);
+            EXPECT_TRUE(at);
+            const stroke::Placement placement = place_writing(w, query, at->position, -along, right, -along);
+            return std::pair<Command, std::string>(
+                PaintDrawing{placed_writing(w, placement, hand), stroke::group_name(w.file)},
+                place_words(w, placement));
+        });
     }
 
     Painted by_program(const std::string& name, const Writing& w, const std::string& words, const std::string& more) {
-        const std::string project = folder_ + "/program.tuft";
-        std::filesystem::remove(project);
-        const nlohmann::json j =
-            test::tuft("paint " + source_folder() + "/models/" + name + " --atlas-size " + std::to_string(kTexels) +
-                           " --strokes " + w.file.string() + " " + words + " " + more + " --project " + project,
-                       folder_ + "/out.json");
-        return {j["canvas_hash"], words, io::Project::open(project).strokes()};
+        return BothPrograms::by_program("paint", name, "--strokes " + w.file.string() + " " + words + " " + more);
     }
-
-    /// The same texels, and the same journal to the bit.
-    void expect_same(const Painted& a, const Painted& b) {
-        EXPECT_EQ(a.hash, b.hash) << a.words;
-        ASSERT_EQ(a.journal.size(), b.journal.size());
-        for (std::size_t i = 0; i < a.journal.size(); ++i) {
-            EXPECT_EQ(stroke::entry_json(a.journal[i]), stroke::entry_json(b.journal[i])) << i;
-            const auto text = [i](const Painted& p) {
-                return io::inkml_text(stroke::record(std::span(p.journal).subspan(i, 1)).strokes);
-            };
-            EXPECT_EQ(text(a), text(b)) << i;
-        }
-    }
-
-    static constexpr std::uint32_t kTexels = 256;
-    std::string folder_ = testing::TempDir() + "/tuft_writing_" + std::to_string(getpid());
-    void SetUp() override { std::filesystem::create_directories(folder_); }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
 };
 
 Writing roundel(double width) {

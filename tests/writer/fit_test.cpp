@@ -108,6 +108,20 @@ TEST(Style, ShippedOnesLoadAndUnknownKeysAreNamed) {
     EXPECT_ANY_THROW(parse_style("tries = 1000", "s.toml"));
 }
 
+// A nib's width is that of its ferrule, whatever the pressure: it is pressed evenly and lightly.
+TEST(Style, ABroadEdgeKeepsItsAngleAndItsPressure) {
+    const Style style = load_style("italic");
+    const auto written = Writer({.style = style, .brush = {}, .side = 0.06}).write({bundled(U'o')});
+    ASSERT_FALSE(written.front().empty());
+    for (const WrittenStroke& stroke : written.front()) {
+        for (std::size_t i = 0; i < stroke.trace.samples.size(); ++i) {
+            EXPECT_EQ(stroke.trace.samples[i].roll, style.edge_angle);
+            EXPECT_EQ(stroke.trace.samples[i].pressure, i + 1 < stroke.trace.samples.size() ? style.edge_pressure : 0)
+                << i;
+        }
+    }
+}
+
 TEST(Links, GapsUpToTheStylesLengthAreDrawn) {
     Style style;
     style.link = 100;

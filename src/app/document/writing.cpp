@@ -60,47 +60,70 @@ Writing read_writing(const std::filesystem::path& file) {
     return out;
 }
 
-stroke::Placement place_writing(const Writing& w, const mesh::SurfaceQuery& query, const Vec3& at, const Vec3& normal,
-                                const Vec3& right, const Vec3& eye) {
+Vec3 rounded_place(const Vec3& at) {
     Vec3 place = at;
     for (int k = 0; k < 3; ++k) place[k] = kMillimetre * rounded(at[k] / kMillimetre, kPlaceStep);
+    return place;
+}
+
+stroke::Placement place_flat(const mesh::SurfaceQuery& query, const Vec3& at, const Vec3& normal, const Vec3& right,
+                             const Vec3& eye, const FlatPose& pose) {
+    const Vec3 place = rounded_place(at);
     const auto on = query.closest_point(place);
     if (!on) return {.origin = at};
     const Vec3 n = glm::dot(on->normal, normal) < 0 ? -on->normal : on->normal;
     const auto turned = [&](const Vec3& facing, const Vec3& upright) {
-        const stroke::Placement seen = stroke::placement_seen(place, facing, right, -w.turn);
+        const stroke::Placement seen = stroke::placement_seen(place, facing, right, -pose.turn);
         return kDegree * rounded(stroke::turn_of(facing, upright, seen.right) / kDegree, kTurnStep);
     };
     stroke::Placement out;
-    if (w.mapping == stroke::SurfaceMapping::project) {
+    if (pose.mapping == stroke::SurfaceMapping::project) {
         // Straight through the picture: as it is seen now it comes to lie.
         const Vec3 from = rounded_direction(eye), towards = glm::normalize(from), upright = stroke::reading_right(from);
         out = stroke::placement_seen(on->position, towards, upright, turned(towards, upright));
     } else {
         out = stroke::upright_placement(on->position, n, turned(n, stroke::upright_right(n)));
     }
-    out.mapping = w.mapping;
+    out.mapping = pose.mapping;
     return out;
+}
+
+stroke::Placement place_writing(const Writing& w, const mesh::SurfaceQuery& query, const Vec3& at, const Vec3& normal,
+                                const Vec3& right, const Vec3& eye) {
+    return place_flat(query, at, normal, right, eye, {w.turn, w.mapping});
 }
 
 double painted_scale(const Writing& w) {
     return w.width > 0 && width_mm(w) > 0 ? width_mm(w) * kMillimetre / w.width : w.scale;
 }
 
-std::string place_words(const Writing& w, const stroke::Placement& p) {
+namespace {
+
+std::string place_words(const stroke::Placement& p, stroke::SurfaceMapping mapping, const std::string& size) {
     const Vec3 normal = glm::normalize(glm::cross(p.down, p.right));
     const Vec3 at = p.origin / kMillimetre;
-    const bool project = w.mapping == stroke::SurfaceMapping::project;
+    const bool project = mapping == stroke::SurfaceMapping::project;
     const Vec3 from = rounded_direction(normal),
                upright = project ? stroke::reading_right(from) : stroke::upright_right(normal);
     const double turn = std::round(100 * stroke::turn_of(normal, upright, p.right) / kDegree) / 100;
-    std::string words = fmt::format("--place {:.3f},{:.3f},{:.3f} --place-width {:.3f} --place-turn {:.2f}", at.x, at.y,
-                                    at.z, width_mm(w), turn + 0.0);  // without the sign of -0
-    if (w.mirrored) words += " --place-mirror";
-    if (w.mapping != stroke::SurfaceMapping::drape)
-        words += " --mapping " + std::string(stroke::surface_mapping_name(w.mapping));
-    if (w.file.extension() == ".svg") words += " --areas brush";
+    std::string words = fmt::format("--place {:.3f},{:.3f},{:.3f}{} --place-turn {:.2f}", at.x, at.y, at.z, size,
+                                    turn + 0.0);  // without the sign of -0
+    if (mapping != stroke::SurfaceMapping::drape)
+        words += " --mapping " + std::string(stroke::surface_mapping_name(mapping));
     if (project) words += fmt::format(" --read-from {:.6f},{:.6f},{:.6f}", from.x, from.y, from.z);
+    return words;
+}
+
+}  // namespace
+
+std::string place_words(const stroke::Placement& p) {
+    return place_words(p, p.mapping, "");
+}
+
+std::string place_words(const Writing& w, const stroke::Placement& p) {
+    std::string words = place_words(p, w.mapping, fmt::format(" --place-width {:.3f}", width_mm(w)));
+    if (w.mirrored) words += " --place-mirror";
+    if (w.file.extension() == ".svg") words += " --areas brush";
     return words;
 }
 
@@ -136,32 +159,45 @@ PlacedWriting placed_writing(const Writing& w, const stroke::Placement& placemen
 
 std::vector<std::vector<PreviewPoint>> preview_lines(const mesh::SurfaceQuery& query, const Writing& w,
                                                      const stroke::Placement& placement, std::size_t most) {
+    std::vector<std::vector<Vec2>> lines;
+    const double scale = painted_scale(w);
+    for (const stroke::RecordedStroke& trace : w.traces) {
+        std::vector<Vec2>& line = lines.emplace_back();
+        for (const stroke::StrokeSample& s : trace.samples) {
+            const Vec2 p = scale * (Vec2(s.position) - w.centre);
+            line.emplace_back(w.mirrored ? -p.x : p.x, p.y);
+        }
+    }
+    return preview_lines(query, lines, placement, most);
+}
+
+std::vector<std::vector<PreviewPoint>> preview_lines(const mesh::SurfaceQuery& query,
+                                                     const std::vector<std::vector<Vec2>>& lines,
+                                                     const stroke::Placement& placement, std::size_t most) {
     std::size_t all = 0;
-    for (const stroke::RecordedStroke& trace : w.traces) all += trace.samples.size();
+    for (const std::vector<Vec2>& line : lines) all += line.size();
     const std::size_t step = std::max<std::size_t>(1, all / most);
     // All in one trace: what is found out about the ground is found once.
     stroke::StrokeSamples thin{.placement = placement};
     std::vector<std::size_t> starts;
-    for (const stroke::RecordedStroke& trace : w.traces) {
+    for (const std::vector<Vec2>& line : lines) {
         starts.push_back(thin.samples.size());
-        const std::size_t n = trace.samples.size();
-        for (std::size_t i = 0; i < n; i += step) thin.samples.push_back(trace.samples[i]);
-        if ((n - 1) % step != 0) thin.samples.push_back(trace.samples.back());
+        for (std::size_t i = 0; i < line.size(); i += step) thin.samples.push_back({.position = Vec3(line[i], 0)});
+        if (!line.empty() && (line.size() - 1) % step != 0) thin.samples.push_back({.position = Vec3(line.back(), 0)});
     }
-    stroke::transform_samples(thin, w.centre, painted_scale(w), w.mirrored);
     const std::vector<stroke::SurfaceSample> mapped = stroke::map_to_surface(query, thin).samples;
-    std::vector<std::vector<PreviewPoint>> lines;
+    std::vector<std::vector<PreviewPoint>> parts;
     for (std::size_t i = 0, next = 0; i < mapped.size(); ++i) {
         while (next < starts.size() && starts[next] == i) {
-            lines.emplace_back();
+            parts.emplace_back();
             ++next;
         }
         if (mapped[i].on_surface)
-            lines.back().push_back({.position = mapped[i].position, .normal = mapped[i].normal});
-        else if (!lines.back().empty())
-            lines.emplace_back();
+            parts.back().push_back({.position = mapped[i].position, .normal = mapped[i].normal});
+        else if (!parts.back().empty())
+            parts.emplace_back();
     }
-    return lines;
+    return parts;
 }
 
 }  // namespace tuft::app

@@ -33,6 +33,19 @@ struct Writing {
 /// Reads an InkML or SVG file. Throws `Error`, also when nothing in it is flat.
 Writing read_writing(const std::filesystem::path& file);
 
+/// Returns a point of the model rounded to 0.001 mm, as options state it; metres.
+Vec3 rounded_place(const Vec3& at);
+
+/// How something flat is turned and mapped.
+struct FlatPose {
+    double turn = 0;  ///< radians, clockwise in the view
+    stroke::SurfaceMapping mapping = stroke::SurfaceMapping::drape;
+};
+
+/// `place_writing` for anything flat.
+stroke::Placement place_flat(const mesh::SurfaceQuery& query, const Vec3& at, const Vec3& normal, const Vec3& right,
+                             const Vec3& eye, const FlatPose& pose);
+
 /// Returns the placement with the drawing's centre at the surface point `at` (metres). `right`: unit, the view's right.
 /// `normal`: unit, towards the eye. `eye`: unit, direction to the eye. Origin and turn are rounded to 0.001 mm and
 /// 0.01° as in `tuft paint --place --place-turn --read-from`, so that `place_words` states them exactly.
@@ -45,6 +58,8 @@ double painted_scale(const Writing& writing);
 /// Returns the options of `tuft paint` for this placement: "--place 1.000,2.000,3.000 --place-width 60.000 --place-turn
 /// 5.00"; with "--areas brush" for SVG, whose lines and areas the studio paints with the brush.
 std::string place_words(const Writing& writing, const stroke::Placement& placement);
+/// The same for anything flat: without width and areas.
+std::string place_words(const stroke::Placement& placement);
 
 /// Returns true when the drawing has line widths.
 bool has_widths(const Writing& writing);
@@ -72,6 +87,10 @@ struct PreviewPoint {
     bool seen = true;       ///< not occluded by the model
 };
 std::vector<std::vector<PreviewPoint>> preview_lines(const mesh::SurfaceQuery& query, const Writing& writing,
+                                                     const stroke::Placement& placement, std::size_t most = 3000);
+/// The same of lines in the frame of the placement, metres.
+std::vector<std::vector<PreviewPoint>> preview_lines(const mesh::SurfaceQuery& query,
+                                                     const std::vector<std::vector<Vec2>>& lines,
                                                      const stroke::Placement& placement, std::size_t most = 3000);
 
 }  // namespace tuft::app

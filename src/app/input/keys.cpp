@@ -30,6 +30,7 @@ constexpr std::array<Shipped, static_cast<std::size_t>(Action::count)> kShipped{
     {"line", "Line", {GLFW_KEY_L, 0}},
     {"curve", "Curve", {GLFW_KEY_C, 0}},
     {"place", "Place writing", {GLFW_KEY_T, 0}},
+    {"write", "Write", {GLFW_KEY_W, 0}},
     {"eraser", "Eraser", {GLFW_KEY_E, 0}},
     {"fill", "Fill", {GLFW_KEY_G, 0}},
     {"pick", "Pick", {GLFW_KEY_I, 0}},

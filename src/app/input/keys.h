@@ -23,6 +23,7 @@ enum class Action {
     line,
     curve,
     writing,
+    text,
     eraser,
     fill,
     pick,

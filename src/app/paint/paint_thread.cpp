@@ -121,6 +121,7 @@ void PaintThread::perform(Command& command) {
                           [&](EndStroke&) { strokes_.end(); },
                           [&](CancelStroke&) { strokes_.cancel(); },
                           [&](PaintDrawing& c) { strokes_.paint_drawing(c); },
+                          [&](PaintText& c) { strokes_.paint_text(c); },
                           [&](UndoStroke&) { journal_.undo(); },
                           [&](RedoStroke&) { journal_.redo(); },
                           [&](EditStrokes& c) { journal_.edit(c); },

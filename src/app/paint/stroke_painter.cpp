@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/system/disk_cache.h"
 #include "stroke/document/fit.h"
 #include "stroke/drawing/copies.h"
 
@@ -100,35 +101,58 @@ void StrokePainter::drop_loads() {
     context_.work.document->restore_undone(std::move(undone_before_));
 }
 
-// The drawing in brushes and pressures that give its widths, then its symmetric copies.
+std::function<double(const std::string&)> StrokePainter::film_of_inks() const {
+    return
+        [this](const std::string& ink) { return context_.work.document->materials().ink(ink).film * ink::kFilmUnit; };
+}
+
+// The drawing in brushes and pressures that give its widths.
 std::vector<stroke::JournalEntry> StrokePainter::entries_of(PaintDrawing& command) {
     PlacedWriting& drawing = command.drawing;
-    drawing.fit.film = [this](const std::string& ink) {
-        return context_.work.document->materials().ink(ink).film * ink::kFilmUnit;
-    };
+    drawing.fit.film = film_of_inks();
     stroke::choose_brushes(drawing.entries, stroke::drawing_in(drawing.entries, true), drawing.scale, drawing.extent,
                            drawing.fit, widths_);
     stroke::redip_long_lines(drawing.entries, drawing.fit, widths_);
     stroke::press_to_widths(drawing.entries, widths_);
-    std::vector<stroke::JournalEntry> all = drawing.entries;
-    for (const stroke::PoseMap& map : stroke::symmetry_copies(command.symmetry))
-        for (const stroke::JournalEntry& entry : drawing.entries)
-            all.push_back(stroke::copy_of(entry, map, stroke::CopyReading::upright));
-    return all;
+    return std::move(drawing.entries);
 }
 
 void StrokePainter::paint_drawing(PaintDrawing& command) {
     cancel();
     const ProgressFn shown = context_.progress("Placing the drawing");
     shown("", 0);
-    std::vector<stroke::JournalEntry> all = entries_of(command);
+    paint_placed(entries_of(command), command, shown);
+}
+
+void StrokePainter::paint_text(PaintText& command) {
+    cancel();
+    const ProgressFn plans = context_.progress("Planning the strokes of the text");
+    plans("", 0);
+    writer::TextHand hand{.options = {}, .fit = command.fit, .cache = DiskCache(cache_folder("writer"))};
+    hand.options.brush = command.brush;
+    hand.options.ink = hand.options.other_ink = command.ink;
+    stroke::BrushFit fit;
+    fit.film = film_of_inks();
+    std::vector<stroke::JournalEntry> entries =
+        lettering_entries(command.text, command.place, hand, fit, widths_, plans);
+    paint_placed(std::move(entries), command, context_.progress("Writing the text"));
+}
+
+// Paints entries and their symmetric copies as one undo step, each copy as a group.
+template <typename Placed>
+void StrokePainter::paint_placed(std::vector<stroke::JournalEntry> entries, const Placed& command,
+                                 const ProgressFn& shown) {
+    const std::size_t in_group = std::max<std::size_t>(1, entries.size());
+    std::vector<stroke::JournalEntry> all = std::move(entries);
+    for (const stroke::PoseMap& map : stroke::symmetry_copies(command.symmetry))
+        for (std::size_t i = 0; i < in_group && i < all.size(); ++i)
+            all.push_back(stroke::copy_of(all[i], map, stroke::CopyReading::upright));
     const auto length_of = [&](const std::string& brush) {
         return context_.work.document->materials().brush(brush).length;
     };
     if (const Message fault = stroke::size_fault(all, length_of, *context_.work.model->query); !fault.empty())
         throw Error(Message("The model does not suit the drawing: {}", fault));
     for (const stroke::JournalEntry& entry : all) context_.work.document->check_size(entry);
-    const std::size_t in_group = std::max<std::size_t>(1, command.drawing.entries.size());
     context_.history.undone.clear();
     context_.history.done.push_back({});
     stroke::EntryGroup group;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "app/work/commands.h"
@@ -24,11 +26,16 @@ class StrokePainter {
     /// Removes the loading entries of a stroke that was never painted, and restores the redo list.
     void drop_loads();
     void paint_drawing(PaintDrawing& command);
+    /// Makes the motions of a text, then paints them as a drawing's.
+    void paint_text(PaintText& command);
 
   private:
     void load_tip(const BeginStroke& command, std::size_t& made);
     void add_copies(const stroke::JournalEntry& original, std::size_t& made);
+    std::function<double(const std::string&)> film_of_inks() const;
     std::vector<stroke::JournalEntry> entries_of(PaintDrawing& command);
+    template <typename Placed>
+    void paint_placed(std::vector<stroke::JournalEntry> entries, const Placed& command, const ProgressFn& shown);
 
     PaintContext& context_;
     BeginStroke current_;

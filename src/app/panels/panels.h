@@ -90,6 +90,10 @@ MenuChoice menu_bar(const MenuParts& s);
 void tool_options(const OptionParts& s, float left, float top, float width);
 /// The column of tools at the window's edge.
 void tool_strip(Session& s, float top, float bottom, float left);
+/// Fields for the place of a drawing or a text.
+void place_fields(Ui& ui, ToolState& tools);
+/// The text that is written, over the view, while its tool is active.
+void lettering_panel(Session& s);
 /// Settings of the active tool, the brush and the ink.
 void tool_panel(Session& s, float top, float bottom, float left);
 /// In place of the tools: recolouring of inks and the shown substrate.

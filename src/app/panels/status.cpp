@@ -40,6 +40,9 @@ ToolText text_of_tool(const Session& s) {
         case Tool::writing:
             return {"Place", s.tools.writing.empty() ? "Choose writing or a drawing in the panel"
                                                      : "Click: place it    Wheel: size    Shift + wheel: turn"};
+        case Tool::text:
+            return {"Write", s.tools.lettering.empty() ? "Type a text in its panel"
+                                                       : "Click: write it    Wheel: size    Shift + wheel: turn"};
         case Tool::eraser:
             return {"Eraser", "Drag: take ink off    [ and ]: pressure"};
         case Tool::fill:
@@ -119,8 +122,9 @@ void put_hints(const Session& s) {
                       m.atlas.texel_size * 1e3);
     }
     const float x = ImGui::GetIO().DisplaySize.x - ImGui::CalcTextSize(text).x - ui.px(14);
-    // The wheel sizes a drawing that is being placed.
-    const bool wheel_is_taken = s.tools.active == Tool::writing && !s.tools.writing.empty();
+    // The wheel sizes a drawing or a text that is being placed.
+    const bool wheel_is_taken = (s.tools.active == Tool::writing && !s.tools.writing.empty()) ||
+                                (s.tools.active == Tool::text && !s.tools.lettering.empty());
     put(s,
         ui.tr(s.preferences.keymap == Keymap::blender
                   ? (wheel_is_taken ? "Middle or right: turn    Shift + middle: move    F1: keys"

@@ -102,6 +102,27 @@ void writing_row(Ui& ui, Writing& w, const Row& row) {
     choices(ui, kMappings, w.mapping, row.width, ui.px(2));
 }
 
+void lettering_row(Ui& ui, Lettering& l, const Row& row) {
+    const bool along = l.direction == writer::Direction::rim || l.direction == writer::Direction::curve;
+    ui.named_slider("Size", l.side, {1e-3, 0.2, "%.1f mm", kMillimetre}, "Of a character. Wheel over the model",
+                    row.width);
+    ImGui::SameLine(0, row.gap);
+    if (l.empty()) return;
+    const writer::Style& style = l.text->style;
+    double spacing = l.spacing > 0 ? l.spacing : style.spacing;
+    if (ui.named_slider("Spacing", spacing, {0.5, 3, "%.2f"}, "Between characters, part of their width", row.width))
+        l.spacing = spacing;
+    ImGui::SameLine(0, row.gap);
+    double lines = l.line_spacing > 0 ? l.line_spacing : style.line_spacing;
+    if (l.text->lines.size() > 1) {
+        if (ui.named_slider("Line spacing", lines, {0.5, 4, "%.2f"}, "Between lines, part of the size", row.width))
+            l.line_spacing = lines;
+    } else if (!along) {
+        ui.named_slider("Turn", l.turn, {-180 * kDegree, 180 * kDegree, "%.0f\xc2\xb0", kDegree},
+                        "Shift and wheel over the model", row.width);
+    }
+}
+
 void fill_row(Ui& ui, stroke::Fill& fill, const Row& row) {
     static constexpr const char* kHint = "What the ink covers where you click";
     static constexpr std::array<std::tuple<stroke::Region, const char*, const char*>, 3> kRegions{
@@ -141,6 +162,7 @@ void tool_options(const OptionParts& s, float left, float top, float width) {
         if (tool == Tool::brush || tool == Tool::eraser) hand_row(ui, s.tools.pointer, row);
         if (tool == Tool::line || tool == Tool::curve) curve_row(s, row);
         if (tool == Tool::writing) writing_row(ui, s.tools.writing, row);
+        if (tool == Tool::text) lettering_row(ui, s.tools.lettering, row);
     }
     ImGui::End();
     ImGui::PopStyleVar(4);

@@ -20,6 +20,7 @@ constexpr Entry kEntries[] = {
     {Tool::curve, Icon::curve, "Curve",
      "Click to set points, drag to move them, the wheel over one changes its pressure, Enter paints (C)"},
     {Tool::writing, Icon::place, "Place", "Places writing or a drawing from a file where you click (T)"},
+    {Tool::text, Icon::write, "Write", "Writes a text that you type where you click (W)"},
     {Tool::eraser, Icon::eraser, "Eraser",
      "Takes ink off with the brush, as deep as it is pressed; a pen's other end does so too (E)"},
     {Tool::fill, Icon::fill, "Fill", "Lays the chosen ink over the whole model, a part or a chart where you click (G)"},
@@ -59,7 +60,7 @@ void tool_strip(Session& s, float top, float bottom, float left) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(s.ui.px(4), s.ui.px(4)));
     begin_side_panel(s.ui, "###strip", {left, top, bottom, kStripWidth, false});
     const float gap = s.ui.px(2), room = bottom - top - s.ui.px(8);
-    const float height = std::min(s.ui.px(50), (room - 9 * gap) / 9 - s.ui.px(1));
+    const float height = std::min(s.ui.px(50), (room - 10 * gap) / 10 - s.ui.px(1));
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0, gap));
     for (const Entry& e : kEntries)
         if (cell(s.ui, e.icon, e.name, e.hint, s.tools.active == e.tool, height)) s.tools.active = e.tool;

@@ -274,6 +274,8 @@ void section_section(Ui& ui, SectionView& section) {
     ui.slider("What stays", section.position, {0.02, 1, "%.2f"});
 }
 
+}  // namespace
+
 // The place in millimetres: of the drawing at the cursor, until one is typed.
 void place_fields(Ui& ui, ToolState& tools) {
     const float gap = ImGui::GetStyle().ItemSpacing.x, width = (ImGui::GetContentRegionAvail().x - 2 * gap) / 3;
@@ -288,6 +290,8 @@ void place_fields(Ui& ui, ToolState& tools) {
     if (ui.button("Place it there", "At the place in the fields, with width and turn as they are", 0))
         tools.place_typed = true;
 }
+
+namespace {
 
 void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
     if (tools.active != Tool::writing) return;

@@ -171,9 +171,20 @@ void curve_marks(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw
     }
 }
 
-// Where the writing would lie, as far as it is seen.
+// The curve that a text runs along.
+void lettering_curve(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) {
+    const Lettering& l = s.tools.lettering;
+    if (s.tools.active != Tool::text || l.direction != writer::Direction::curve) return;
+    const std::vector<CurveSample> places = project_curve(s.surface, l.curve, 32);
+    for (std::size_t i = 1; i < places.size(); ++i)
+        if (places[i].on && places[i - 1].on)
+            draw->AddLine(on_screen(s, c, places[i - 1].position), on_screen(s, c, places[i].position),
+                          IM_COL32(90, 210, 255, 200), s.ui.px(1.6f));
+}
+
+// Where the drawing or the text would lie, as far as it is seen.
 void writing_marks(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) {
-    if (s.tools.active != Tool::writing) return;
+    if (s.tools.active != Tool::writing && s.tools.active != Tool::text) return;
     for (const std::vector<Vec3>& guide : s.tools.snap_guides)
         for (std::size_t i = 1; i < guide.size(); ++i) {
             const ImVec2 from = on_screen(s, c, guide[i - 1]), to = on_screen(s, c, guide[i]);
@@ -267,6 +278,7 @@ void view_marks(const MarkParts& s, const render::GlCamera& c) {
     if (!s.view.tuft.state.branches.empty()) s.view.tuft.pressed ? contact_outline(s, c, draw) : hover_ring(s, c, draw);
     if (!s.view.tuft.state.branches.empty()) copy_dots(s, c, draw);
     curve_marks(s, c, draw);
+    lettering_curve(s, c, draw);
     writing_marks(s, c, draw);
     shift_marks(s, c, draw);
     lasso_marks(s, draw);

@@ -61,6 +61,7 @@ void forget_model(Session& s) {
     s.colours.palette.picture = {};
     s.colours.palette.fresh = true;
     s.tools.curve = {};
+    s.tools.lettering.curve.clear();
 }
 
 // A model was looked at: the dialog proposes unit and texels.
@@ -159,6 +160,7 @@ void take_work(Session& s, PaintWork work) {
     if (help.by_itself && !help.seen && help.step < 0) start_guide(help);
     const Box& bounds = s.paint_thread->model().mesh->bounds;
     s.tools.symmetry.centre = bounds.centre();
+    s.tools.lettering.side = 0;
     if (s.view.keep_camera) s.view.orbit.follow(motion, bounds);
     revision = std::move(next);
     show_message(s.status, source.empty() ? note : revision_note(revision));

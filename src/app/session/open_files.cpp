@@ -25,6 +25,13 @@ void open_writing(Session& s, const fs::path& path) {
     }
 }
 
+fs::path glyphs_beside(const fs::path& file) {
+    const std::string stem = file.stem().string();
+    const bool code = stem.size() == 5 && stem.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos;
+    const bool one = file.extension() == ".json" || (file.extension() == ".svg" && code);
+    return one ? file.parent_path() : file;
+}
+
 void open_ink(PaintThread* work, StatusMessage& status, const fs::path& path) {
     if (!work) return show_message(status, "Open a model first.");
     try {

@@ -12,6 +12,9 @@ namespace tuft::app {
 
 /// Loads a drawing, to be placed on the model.
 void open_writing(Session& s, const std::filesystem::path& path);
+/// Returns the source of characters that a file belongs to: the folder of a file of one character (hanzi-writer-data,
+/// KanjiVG), else the file.
+std::filesystem::path glyphs_beside(const std::filesystem::path& file);
 /// Adds an ink to the project.
 void open_ink(PaintThread* work, StatusMessage& status, const std::filesystem::path& path);
 /// Writes an ink to a file; the file's name becomes its name.

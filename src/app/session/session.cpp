@@ -80,6 +80,7 @@ void poll_session(Session& s) {
     poll_paint_thread(s);
     if (opened) choose_brush(s.brush, *s.paint_thread, s.journal.lines, s.tools.pointer.pressure);
     poll_colour(s.colours, s.brush);
+    s.tools.letters.update(s.tools.lettering);
 }
 
 void poll_paint_thread(Session& s) {
@@ -100,7 +101,8 @@ void poll_paint_thread(Session& s) {
 
 bool is_settled(const Session& s) {
     return !s.project.opening.running() && !s.colours.choice.finder.busy() &&
-           (!s.paint_thread || s.paint_thread->idle()) && !s.tools.pointer_down;
+           !s.tools.letters.busy(s.tools.lettering) && (!s.paint_thread || s.paint_thread->idle()) &&
+           !s.tools.pointer_down;
 }
 
 }  // namespace tuft::app

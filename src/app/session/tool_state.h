@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/document/curve.h"
+#include "app/document/lettering.h"
 #include "app/document/writing.h"
 #include "app/input/pointer_input.h"
 #include "stroke/gesture/symmetry.h"
@@ -13,7 +14,7 @@
 /// The tools' state. Window thread.
 namespace tuft::app {
 
-enum class Tool { brush, line, curve, writing, eraser, fill, pick, mask };
+enum class Tool { brush, line, curve, writing, text, eraser, fill, pick, mask };
 
 /// The active tool and the settings of each tool.
 struct ToolState {
@@ -25,7 +26,10 @@ struct ToolState {
     CurveInWork curve;
     CurveSettings curve_settings;
     Writing writing;
-    std::vector<std::vector<PreviewPoint>> writing_preview;  ///< lines of the drawing at the cursor
+    Lettering lettering;
+    LetteringReader letters;                                 ///< reads the characters of the text
+    std::vector<std::vector<PreviewPoint>> writing_preview;  ///< lines of the drawing or the text at the cursor
+    Message place_fault;                                     ///< why the text cannot lie at the cursor
     bool snap = true;                            ///< drawings snap to planes of symmetry and to other drawings
     std::vector<std::vector<Vec3>> snap_guides;  ///< metres, lines along the surface that the drawing snapped to
     std::array<double, 3> place_mm{};            ///< of the drawing at the cursor, or as typed

@@ -147,8 +147,9 @@ void SceneView::update_tuft(const Event* cursor, const std::optional<brush::Pose
         preview_brush_.clear();  // its file may be another by the next stroke
     } else if (guided) {
         hover(*guided);
-    } else if (s.tools.active != Tool::writing && s.tools.active != Tool::fill && s.tools.active != Tool::pick &&
-               s.tools.active != Tool::mask && !s.journal.move_on_drag && cursor && !is_dialog_open(s)) {
+    } else if (s.tools.active != Tool::writing && s.tools.active != Tool::text && s.tools.active != Tool::fill &&
+               s.tools.active != Tool::pick && s.tools.active != Tool::mask && !s.journal.move_on_drag && cursor &&
+               !is_dialog_open(s)) {
         choose_preview();
         Event at = *cursor;
         at.time = now;

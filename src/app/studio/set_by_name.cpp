@@ -81,7 +81,8 @@ constexpr Setting kBrushSettings[] = {
 constexpr Setting kToolSettings[] = {
     {"tool",
      [](Session& s, const SettingValue& v) {
-         s.tools.active = v.choice<Tool>({"brush", "line", "curve", "writing", "eraser", "fill", "pick", "mask"});
+         s.tools.active =
+             v.choice<Tool>({"brush", "line", "curve", "writing", "text", "eraser", "fill", "pick", "mask"});
      }},
     {"clean-ends", [](Session& s, const SettingValue& v) { s.tools.pointer.clean_ends = v.on; }},
     {"pressure", [](Session& s, const SettingValue& v) { s.tools.pointer.pressure = v.within(0.02, 1); }},
@@ -106,6 +107,22 @@ constexpr Setting kToolSettings[] = {
      [](Session& s, const SettingValue& v) {
          s.tools.writing.mapping = v.choice<stroke::SurfaceMapping>({"wrap", "drape", "project"});
      }},
+    {"text", [](Session& s, const SettingValue& v) { set_text(s.tools.lettering, v.text); }},
+    {"text-style", [](Session& s, const SettingValue& v) { s.tools.lettering.wanted.style = v.text; }},
+    {"text-glyphs", [](Session& s, const SettingValue& v) { s.tools.lettering.wanted.glyphs = v.text; }},
+    {"text-direction",
+     [](Session& s, const SettingValue& v) {
+         s.tools.lettering.direction = v.choice<writer::Direction>({"horizontal", "vertical", "rim", "curve"});
+     }},
+    {"text-size", [](Session& s, const SettingValue& v) { s.tools.lettering.side = v.within(1, 2000) * kMillimetre; }},
+    {"text-spacing", [](Session& s, const SettingValue& v) { s.tools.lettering.spacing = v.within(0, 10); }},
+    {"text-line-spacing", [](Session& s, const SettingValue& v) { s.tools.lettering.line_spacing = v.within(0, 10); }},
+    {"text-turn", [](Session& s, const SettingValue& v) { s.tools.lettering.turn = -v.number * kDegree; }},
+    {"text-brush",
+     [](Session& s, const SettingValue& v) {
+         s.tools.lettering.style_brush = v.one_of({"chosen", "style"}) == 1;
+     }},
+    {"text-fit", [](Session& s, const SettingValue& v) { s.tools.lettering.fit = v.on; }},
     {"mask-kind", [](Session& s, const SettingValue& v) { s.masks.choice.kind = stroke::mask_kind_of(v.text); }},
     {"mask-within", [](Session& s, const SettingValue& v) { s.masks.choice.within = v.within(0, 180) * kDegree; }},
     {"layer",

@@ -212,6 +212,7 @@ void Studio::draw_side_panels() {
     const bool still = !input_.stroke().drawing() && !input_.turned_within(kStill, now_);
     upload_thumbnails(s, still);
     colour_panel(s);
+    lettering_panel(s);
     arm_panel(s);
     references_over_view(s);
     swipe_line(s);
@@ -258,6 +259,9 @@ void Studio::take_file(const fs::path& path) {
             return revise_with(s, path);
         case FileDialog::Purpose::writing:
             return open_writing(s, path);
+        case FileDialog::Purpose::glyphs:
+            s.tools.lettering.wanted.glyphs = glyphs_beside(path);
+            return;
         case FileDialog::Purpose::reference:
             return pin_reference(s, path);
         case FileDialog::Purpose::ink:

@@ -39,6 +39,7 @@ StudioInput::StudioInput(Session& session, const Comparison& comparison)
       stroke_(session, tip_lag_),
       curve_(session, tip_lag_),
       writing_(session),
+      lettering_(session),
       arm_(session) {
     cursor_.x = cursor_.y = -1;
 }
@@ -51,6 +52,7 @@ void StudioInput::drop() {
 void StudioInput::watch(double now) {
     curve_.watch(cursor());
     writing_.watch(cursor());
+    lettering_.watch(cursor());
     arm_.update(now, stroke_.drawing());
 }
 
@@ -106,6 +108,8 @@ void StudioInput::scroll(const Event& e) {
     if (s.tools.curve.over >= 0) return curve_.wheel(e, now_);
     if (s.tools.active == Tool::writing && !s.tools.writing.empty() && !(e.modifiers & (kAlt | kControl)))
         return writing_.wheel(e);
+    if (s.tools.active == Tool::text && !s.tools.lettering.empty() && !(e.modifiers & (kAlt | kControl)))
+        return lettering_.wheel(e);
     if ((e.modifiers & kAlt) && brush_can_be_turned(s.brush)) return roll_holder(s.tools.pointer, e.steps);
     last_turn_ = now_;
     Orbit& orbit = s.view.orbit;
@@ -170,6 +174,7 @@ void StudioInput::press_tool(const Event& e) {
     // Ink is shown as it is while one paints.
     if (tool != Tool::mask && tool != Tool::pick) select_entries(s.journal, s.paint_thread.get(), {});
     if (tool == Tool::writing) return writing_.place(cursor());
+    if (tool == Tool::text) return lettering_.place(cursor());
     if (tool == Tool::pick) return press_pick(s, e);
     if (tool == Tool::mask) return press_mask(s, e);
     if (tool == Tool::fill) return press_fill(s, e);
@@ -318,9 +323,9 @@ bool StudioInput::perform_view(Action action) {
 // What chooses a tool or sets the brush; false for other acts.
 bool StudioInput::perform_tool(Action action) {
     static constexpr std::pair<Action, Tool> kTools[] = {
-        {Action::brush, Tool::brush},     {Action::line, Tool::line},     {Action::curve, Tool::curve},
-        {Action::writing, Tool::writing}, {Action::eraser, Tool::eraser}, {Action::fill, Tool::fill},
-        {Action::pick, Tool::pick},       {Action::mask, Tool::mask}};
+        {Action::brush, Tool::brush},     {Action::line, Tool::line}, {Action::curve, Tool::curve},
+        {Action::writing, Tool::writing}, {Action::text, Tool::text}, {Action::eraser, Tool::eraser},
+        {Action::fill, Tool::fill},       {Action::pick, Tool::pick}, {Action::mask, Tool::mask}};
     static constexpr std::tuple<Action, double, double> kLeans[] = {
         {Action::lean_left, -1, 0}, {Action::lean_right, 1, 0}, {Action::lean_away, 0, 1}, {Action::lean_near, 0, -1}};
     Session& s = session_;

@@ -5,6 +5,7 @@
 #include "app/studio/comparison.h"
 #include "app/tools/arm_input.h"
 #include "app/tools/curve_tool.h"
+#include "app/tools/lettering_tool.h"
 #include "app/tools/stroke_input.h"
 #include "app/tools/writing_tool.h"
 
@@ -55,6 +56,7 @@ class StudioInput {
     StrokeInput stroke_;
     CurveTool curve_;
     WritingTool writing_;
+    LetteringTool lettering_;
     ArmInput arm_;
     Event cursor_;
     bool inside_ = false;  ///< the cursor is over the model's view

@@ -173,7 +173,10 @@ void CurveTool::watch(const Event* cursor) {
     // Undone, or something was painted after it: it is history now.
     if (curve.last_stroke && !editable() && is_settled(s)) curve = {};
     const bool tool = s.tools.active == Tool::line || s.tools.active == Tool::curve;
-    if (!tool && !curve.points.empty()) curve = {};
+    if (!tool && !curve.points.empty()) {
+        if (curve.points.size() > 1) s.tools.lettering.curve = std::move(curve.points);
+        curve = {};
+    }
     if (curve.grabbed < 0) curve.over = tool && cursor ? point_at(*cursor) : -1;
 }
 

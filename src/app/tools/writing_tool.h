@@ -4,6 +4,7 @@
 
 #include "app/input/events.h"
 #include "app/session/session.h"
+#include "app/tools/placing.h"
 
 /// \file
 /// The tool for drawings and handwriting. Window thread.
@@ -14,7 +15,8 @@ class WritingTool {
   public:
     explicit WritingTool(Session& session) : session_(session) {}
 
-    /// Updates the preview of the drawing at the cursor, and places it where a place was typed.
+    /// Updates the preview of the drawing at the cursor, and places it where a place was typed. Only while the tool is
+    /// active.
     void watch(const Event* cursor);
     /// Scales the drawing; with Shift, turns it.
     void wheel(const Event& e);
@@ -22,15 +24,8 @@ class WritingTool {
     void place(const Event* cursor);
 
   private:
-    /// A point of the surface for the middle of the drawing, its normal towards the eye, and where that is.
-    struct Spot {
-        Vec3 at, normal, eye;
-        std::vector<std::vector<Vec3>> guides = {};  ///< of what it snapped to
-    };
-    std::optional<Spot> spot(const Event* cursor) const;
-    std::optional<Spot> typed_spot() const;
-    stroke::Placement placement_at(const Spot& spot) const;
-    void place(const Spot& spot);
+    stroke::Placement placement_at(const PlacingSpot& spot) const;
+    void place(const PlacingSpot& spot);
 
     Session& session_;
     // Arguments of the last preview.

@@ -78,6 +78,8 @@ bool FileDialog::suits(const fs::path& file) const {
     if (purpose_ == Purpose::decals) return is_one_of(e, {".pdf", ".svg", ".dxf"});
     if (purpose_ == Purpose::film) return is_one_of(e, {".mp4", ".gif"});
     if (purpose_ == Purpose::writing) return is_one_of(e, {".svg", ".inkml"});
+    if (purpose_ == Purpose::glyphs)
+        return is_one_of(e, {".json", ".svg", ".txt", ".ttf", ".otf", ".ttc", ".woff", ".woff2"});
     if (purpose_ == Purpose::reference) return is_one_of(e, {".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff"});
     return (e == ".tuft" && purpose_ != Purpose::revise) || io::is_model_file(file);
 }
@@ -373,7 +375,7 @@ std::optional<fs::path> FileDialog::draw(Ui& ui, Pictures& pictures) {
     static constexpr const char* titles[] = {
         "Open a model or project", "Save project as", "Export to",       "Writing or drawing to place",
         "Revised model",           "Open an ink",     "Save the ink as", "Reference image",
-        "Recording of an arm",     "Decal sheets to", "Film to"};
+        "Recording of an arm",     "Decal sheets to", "Film to",         "Characters from"};
     const char* title = titles[static_cast<int>(purpose_)];
     ImGui::Begin((std::string(ui.tr(title)) + "###files").c_str(), nullptr,
                  ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |

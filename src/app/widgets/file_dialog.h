@@ -28,7 +28,8 @@ class FileDialog {
         reference,
         arm_recording,
         decals,
-        film
+        film,
+        glyphs
     };
 
     void show(Purpose purpose, const std::filesystem::path& start);

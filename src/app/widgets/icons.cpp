@@ -56,6 +56,13 @@ void draw_place(const IconPen& p) {
     p.bezier({8, 15}, {10, 6}, {14, 18}, {16, 9});
 }
 
+// A letter in a brush's strokes, on its line.
+void draw_write(const IconPen& p) {
+    p.line({{6, 17}, {12, 4}, {18, 17}});
+    p.line({{8.3f, 12}, {15.7f, 12}});
+    p.line({{4, 21}, {20, 21}});
+}
+
 void draw_eraser(const IconPen& p) {
     p.line({{13, 4}, {20, 11}, {12, 19}, {8, 19}, {4, 15}}, true);
     p.area({{9, 8}, {16, 15}, {12, 19}, {8, 19}, {4.5f, 14.5f}});
@@ -128,6 +135,8 @@ void draw_icon(ImDrawList* draw, Icon icon, const ImVec2& at, float size, unsign
             return draw_curve(p);
         case Icon::place:
             return draw_place(p);
+        case Icon::write:
+            return draw_write(p);
         case Icon::eraser:
             return draw_eraser(p);
         case Icon::fill:

@@ -12,6 +12,7 @@ enum class Icon {
     line,
     curve,
     place,
+    write,
     eraser,
     fill,
     pick,

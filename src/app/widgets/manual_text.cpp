@@ -55,6 +55,9 @@ constexpr ManualPage kPages[] = {
      "them, a click places them.\n"
      "\"Drape\" bridges small grooves, panel gaps and scan noise; \"Wrap\" goes into each groove; \"Project\" goes "
      "straight, as seen from before the place. Strokes scale with the drawing.\n"
+     "* {write}: a text that you type follows the cursor, and a click writes it: in lines, in columns from right to "
+     "left, round the model, or along the curve whose points were set last. Its characters are made stroke by stroke "
+     "for the brush; they come with the program, or from fonts and folders of yours.\n"
      "A placed drawing is one group in the journal: hidden, moved, inked and deleted as one.\n"
      "It snaps to the plane of symmetry and level with other drawings, along the blue line; Ctrl places it freely. Its "
      "place can be typed.\n"},

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "app/document/lettering.h"
 #include "app/document/writing.h"
 #include "brush/tuft/tuft.h"
 #include "io/project/attachments.h"
@@ -53,6 +54,18 @@ struct PaintDrawing {
     PlacedWriting drawing;
     std::string name;           ///< of its group of strokes; each symmetric copy is another group; empty: no groups
     stroke::Symmetry symmetry;  ///< copies of the drawing read in the same direction, also beyond a mirror plane
+    std::uint32_t layer = stroke::kFirstLayer;
+    std::uint32_t mask = 0;
+    bool wet = false;
+};
+/// Writes a text on the model; one undo step.
+struct PaintText {
+    writer::Text text;
+    LetteringPlace place;
+    std::string brush, ink;  ///< presets; an empty brush: the style's
+    bool fit = false;        ///< to the outlines of the source
+    std::string name;        ///< of its group; from here on as `PaintDrawing`
+    stroke::Symmetry symmetry;
     std::uint32_t layer = stroke::kFirstLayer;
     std::uint32_t mask = 0;
     bool wet = false;
@@ -177,11 +190,12 @@ struct ShowSnapshot {
 struct RestoreSnapshot {
     std::string id;
 };
-using Command = std::variant<AttachToProject, DetachFromProject, TakeSnapshot, RenameSnapshot, ShowSnapshot,
-                             RestoreSnapshot, BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing,
-                             ActOnBrush, UndoStroke, RedoStroke, SaveProject, RetrySaving, ExportModel, ExportSheets,
-                             ExportFilm, EditStrokes, HighlightStrokes, FillModel, ChangeLayers, SendTexture, PickInk,
-                             TakeInk, RecolourInk, PreviewSubstrate, ChangeMasks, ChangeParts, ShowMask, LookFrom>;
+using Command =
+    std::variant<AttachToProject, DetachFromProject, TakeSnapshot, RenameSnapshot, ShowSnapshot, RestoreSnapshot,
+                 BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing, PaintText, ActOnBrush, UndoStroke,
+                 RedoStroke, SaveProject, RetrySaving, ExportModel, ExportSheets, ExportFilm, EditStrokes,
+                 HighlightStrokes, FillModel, ChangeLayers, SendTexture, PickInk, TakeInk, RecolourInk,
+                 PreviewSubstrate, ChangeMasks, ChangeParts, ShowMask, LookFrom>;
 
 /// Returns true when the command changes the work. It is refused while a project is only viewed.
 bool changes_work(const Command& command);

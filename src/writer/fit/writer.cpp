@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "brush/preset/preset.h"
+#include "brush/tuft/ferrule.h"
 #include "core/error.h"
 #include "core/hash.h"
 #include "core/system/files.h"
@@ -189,7 +190,11 @@ WrittenStroke Writer::motion(const std::vector<Station>& stations, const Glyph& 
                 style.kind == HandKind::line ? style.half_width : median_width(with.widths, with.unit) / with.unit / 2;
     out.trace = samples_of(own, with, pace());
     if (style.kind == HandKind::nib && glyph.single_line)
-        for (stroke::StrokeSample& s : out.trace.samples) s.roll = style.edge_angle;
+        for (stroke::StrokeSample& s : out.trace.samples) {
+            s.roll = style.edge_angle;
+            // Its width is the ferrule's: pressed deeper, hair that turns over drags steps into the counter.
+            if (brush::can_be_turned(with.preset)) s.pressure = std::min(s.pressure, style.edge_pressure);
+        }
     return out;
 }
 

@@ -35,6 +35,7 @@ const std::map<std::string, Range, std::less<>> kNumbers{
     {"weight", {&Style::weight, 0.1, 3}},
     {"slant_deg", {&Style::slant, -45, 45, kDegree}},
     {"edge_angle_deg", {&Style::edge_angle, -180, 180, kDegree}},
+    {"edge_pressure", {&Style::edge_pressure, 0.05, 1}},
     {"spacing", {&Style::spacing, 0.1, 10}},
     {"line_spacing", {&Style::line_spacing, 0.1, 10}},
 };

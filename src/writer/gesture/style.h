@@ -31,6 +31,7 @@ struct Style {
     double weight = 1;                           ///< factor of all half widths
     double slant = 0;                            ///< radians, letters lean to the right
     double edge_angle = 0.6981317;               ///< radians, of the nib's edge above the line
+    double edge_pressure = 0.15;                 ///< of the nib, part of the working depth
     double spacing = 1.05, line_spacing = 1.25;  ///< parts of the side, between centres of squares
 };
 

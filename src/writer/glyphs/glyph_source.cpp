@@ -208,7 +208,7 @@ std::vector<std::vector<Glyph>> glyphs_of(const std::vector<std::u32string>& lin
     if (missing.empty()) return out;
     std::string names;
     for (const char32_t c : missing) names += (names.empty() ? "" : " ") + utf8_of(c);
-    throw Error(Message("no source has the characters {} (see --glyphs)", names));
+    throw Error(Message("no source has the characters {}", names));
 }
 
 }  // namespace tuft::writer

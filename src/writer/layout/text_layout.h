@@ -25,6 +25,8 @@ struct LayoutOptions {
     double side = 0.05;          ///< metres, of a character's square
     double spacing = 1.05;       ///< of characters: part of their advance
     double line_spacing = 1.25;  ///< parts of the side
+
+    bool operator==(const LayoutOptions&) const = default;
 };
 
 /// Splits a text at newlines ("\n" and the two characters \ n); at least one line.

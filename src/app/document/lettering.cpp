@@ -1,0 +1,228 @@
+#include "app/document/lettering.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "core/error.h"
+#include "core/text/units.h"
+#include "stroke/drawing/drawing.h"
+
+namespace tuft::app {
+namespace {
+
+// A preview follows the cursor: of longer texts less is shown.
+constexpr std::size_t kMostStrokesShown = 750, kMostCharactersShown = 60;
+constexpr double kUsualPart = 0.1;  // of the model's diagonal
+constexpr int kPerSpan = 64;        // samples of a curve between two control points
+
+/// Rounded to a thousandth, as `place_words` states it.
+double rounded(double value) {
+    return std::round(value * 1000) / 1000;
+}
+
+/// A text as one argument of a shell.
+std::string quoted(const std::string& text) {
+    std::string out = "'";
+    for (const char c : text) {
+        if (c == '\n')
+            out += "\\n";
+        else if (c == '\'')
+            out += "'\\''";
+        else
+            out += c;
+    }
+    return out + "'";
+}
+
+const char* direction_word(writer::Direction direction) {
+    switch (direction) {
+        case writer::Direction::horizontal:
+            return "horizontal";
+        case writer::Direction::vertical:
+            return "vertical";
+        case writer::Direction::rim:
+            return "rim";
+        case writer::Direction::curve:
+            return "curve";
+    }
+    return "";
+}
+
+/// The curve up to where it leaves the surface, and its point nearest to `at`.
+LetteringPath path_of(const mesh::SurfaceQuery& query, const std::vector<CurvePoint>& points, const Vec3& at) {
+    LetteringPath on;
+    double nearest = 1e300;
+    for (const CurveSample& s : project_curve(query, points, kPerSpan)) {
+        if (!s.on) break;
+        if (const double away = glm::distance(s.position, at); away < nearest) nearest = away, on.middle = s.along;
+        on.path.points.push_back(s.position);
+        on.path.normals.push_back(s.normal);
+    }
+    if (on.path.points.size() < 2)
+        throw Error(Message("There is no curve: set its points with the tool Curve, then come back to this one"));
+    return on;
+}
+
+/// The middle of the text on an open path, where all of it has room.
+double kept_within(const LetteringPath& on, double length) {
+    const double room = on.path.length();
+    return length < room ? std::clamp(on.middle, 0.5 * length, room - 0.5 * length) : 0.5 * room;
+}
+
+Box box_of(const std::vector<std::vector<Vec2>>& lines) {
+    Box box;
+    for (const std::vector<Vec2>& line : lines)
+        for (const Vec2& p : line) box.add(Vec3(p, 0));
+    return box;
+}
+
+std::vector<stroke::JournalEntry> entries_in_lines(const writer::Text& text, const stroke::Placement& placement,
+                                                   const writer::TextHand& hand, const stroke::BrushFit& fit,
+                                                   stroke::WidthTables& widths, const ProgressFn& progress) {
+    std::vector<stroke::JournalEntry> entries;
+    writer::append_lines(entries, text, hand, progress);
+    const std::vector<stroke::StrokeSamples*> drawing = stroke::drawing_in(entries, false);
+    for (stroke::StrokeSamples* trace : drawing) trace->placement.mapping = placement.mapping;
+    const Box box = stroke::extent_of(drawing);
+    stroke::place_drawing(drawing, {placement, Vec2(box.centre()), 1, false});
+    stroke::choose_brushes(entries, drawing, 1, std::max(box.size().x, box.size().y), fit, widths);
+    return entries;
+}
+
+std::size_t strokes_in(const writer::Text& text) {
+    std::size_t n = 0;
+    for (const auto& line : text.lines)
+        for (const writer::Glyph& glyph : line) n += glyph.strokes.size() + glyph.area.size();
+    return n;
+}
+
+std::vector<PreviewPoint> line_through(const std::vector<stroke::Placement>& places) {
+    std::vector<PreviewPoint> line;
+    for (const stroke::Placement& p : places)
+        line.push_back({.position = p.origin, .normal = glm::cross(p.down, p.right)});
+    return line;
+}
+
+}  // namespace
+
+double usual_side(const Box& model) {
+    const double side = kUsualPart * model.diagonal(), step = std::pow(10, std::floor(std::log10(side)) - 1);
+    return std::round(side / step) * step;
+}
+
+void lay_out(Lettering& l) {
+    if (!l.text) return;
+    const writer::Style& style = l.text->style;
+    l.text->layout = {.direction = l.direction,
+                      .side = kMillimetre * rounded(l.side / kMillimetre),
+                      .spacing = l.spacing > 0 ? rounded(l.spacing) : style.spacing,
+                      .line_spacing = l.line_spacing > 0 ? rounded(l.line_spacing) : style.line_spacing};
+}
+
+LetteringReader::Read LetteringReader::read(const writer::TextRequest& request) {
+    Read out;
+    try {
+        if (request.text.empty()) return out;
+        writer::Text text = reader_.read(request);
+        if (!text.blank()) out.text = std::move(text);
+    } catch (const std::exception& error) {
+        out.fault = message_of(error);
+    }
+    return out;
+}
+
+void LetteringReader::update(Lettering& l) {
+    if (reading_.valid()) {
+        if (reading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return lay_out(l);
+        Read read = reading_.get();
+        l.text = std::move(read.text);
+        l.fault = std::move(read.fault);
+        ++l.revision;
+    }
+    lay_out(l);
+    if (l.wanted == asked_) return;
+    asked_ = l.wanted;
+    reading_ = std::async(std::launch::async, [this, request = asked_] { return read(request); });
+}
+
+bool LetteringPath::operator==(const LetteringPath& other) const {
+    return path.points == other.path.points && middle == other.middle && at == other.at;
+}
+
+LetteringPlace place_lettering(const Lettering& l, const mesh::SurfaceQuery& query, const Vec3& at, const Vec3& normal,
+                               const Vec3& right, const Vec3& eye) {
+    const Vec3 place = rounded_place(at);
+    if (l.direction == writer::Direction::rim) {
+        const auto on = query.closest_point(place);
+        if (!on) throw Error(Message("the model has no surface"));
+        return LetteringPath{writer::level_section(query, on->position), 0, place};
+    }
+    if (l.direction == writer::Direction::curve) {
+        LetteringPath on = path_of(query, l.curve, at);
+        on.middle = kept_within(on, l.text->layout.side * writer::length_of(*l.text));
+        return on;
+    }
+    return place_flat(query, at, normal, right, eye, {l.turn, stroke::SurfaceMapping::drape});
+}
+
+std::vector<std::vector<PreviewPoint>> preview_lines(const mesh::SurfaceQuery& query, const Lettering& l,
+                                                     const LetteringPlace& place, std::size_t most) {
+    const writer::Text& text = *l.text;
+    if (const auto* placement = std::get_if<stroke::Placement>(&place)) {
+        std::vector<std::vector<Vec2>> lines =
+            strokes_in(text) < kMostStrokesShown ? writer::outlined_lines(text) : writer::middle_lines(text);
+        const Vec2 centre(box_of(lines).centre());
+        for (std::vector<Vec2>& line : lines)
+            for (Vec2& p : line) p -= centre;
+        return preview_lines(query, lines, *placement, most);
+    }
+    const LetteringPath& on = std::get<LetteringPath>(place);
+    const std::vector<stroke::Placement> places = writer::places_along(text, on.path, on.middle);
+    if (places.size() > kMostCharactersShown) return {line_through(places)};
+    const auto characters = writer::outlined_characters(text);
+    std::vector<std::vector<PreviewPoint>> all;
+    for (std::size_t i = 0; i < characters.size(); ++i) {
+        if (characters[i].empty()) continue;
+        auto lines = preview_lines(query, characters[i], places[i], std::max<std::size_t>(8, most / characters.size()));
+        std::move(lines.begin(), lines.end(), std::back_inserter(all));
+    }
+    return all;
+}
+
+std::string place_words(const Lettering& l, const LetteringPlace& place, const std::string& brush) {
+    const writer::TextRequest& wanted = l.wanted;
+    std::string words = fmt::format("--text {} --style {} --size {:.3f} --direction {}", quoted(wanted.text),
+                                    wanted.style, l.side / kMillimetre, direction_word(l.direction));
+    if (!wanted.glyphs.empty()) words += " --glyphs " + quoted(wanted.glyphs.string());
+    if (l.spacing > 0) words += fmt::format(" --spacing {:.3f}", l.spacing);
+    if (l.line_spacing > 0) words += fmt::format(" --line-spacing {:.3f}", l.line_spacing);
+    if (!l.style_brush) words += " --brush " + quoted(brush);
+    if (l.fit) words += " --fit";
+    if (const auto* placement = std::get_if<stroke::Placement>(&place)) return words + " " + place_words(*placement);
+    if (l.direction != writer::Direction::rim) return words;
+    const Vec3 at = std::get<LetteringPath>(place).at / kMillimetre;
+    return words + fmt::format(" --place {:.3f},{:.3f},{:.3f}", at.x, at.y, at.z);
+}
+
+std::vector<stroke::JournalEntry> lettering_entries(const writer::Text& text, const LetteringPlace& place,
+                                                    const writer::TextHand& hand, stroke::BrushFit fit,
+                                                    stroke::WidthTables& widths, const ProgressFn& progress) {
+    fit.grow = fit.fit = hand.options.brush.empty();
+    std::vector<stroke::JournalEntry> entries;
+    if (const auto* placement = std::get_if<stroke::Placement>(&place)) {
+        entries = entries_in_lines(text, *placement, hand, fit, widths, progress);
+    } else {
+        const LetteringPath& on = std::get<LetteringPath>(place);
+        writer::append_along(entries, text, on.path, on.middle, hand, progress);
+        stroke::choose_brushes(entries, {}, 1, 0, fit, widths);
+    }
+    stroke::redip_long_lines(entries, fit, widths);
+    stroke::press_to_widths(entries, widths);
+    return entries;
+}
+
+}  // namespace tuft::app

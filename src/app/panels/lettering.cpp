@@ -1,0 +1,153 @@
+#include <imgui.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "app/panels/panels.h"
+#include "writer/gesture/style.h"
+
+/// \file
+/// The panel of the tool that writes: the text, its style, and where its characters come from.
+namespace tuft::app {
+namespace {
+
+constexpr float kLetteringWidth = 236;  // pixels at a scale of 1
+constexpr float kTextLines = 3.6f;      // of the field, seen without scrolling
+
+/// Names of shipped styles in the window.
+constexpr std::pair<const char*, const char*> kStyleTitles[] = {
+    {"kaishu", "Regular"}, {"xingshu", "Running"}, {"line", "Even line"}, {"italic", "Italic"}};
+
+std::string title_of(const std::string& style) {
+    for (const auto& [name, title] : kStyleTitles)
+        if (style == name) return title;
+    return style;
+}
+
+void choose_style(Ui& ui, Lettering& l, float width) {
+    static const std::vector<std::string> styles = writer::list_styles();
+    std::vector<std::string> titles;
+    for (const std::string& style : styles) titles.push_back(title_of(style));
+    std::string chosen = title_of(l.wanted.style);
+    if (ui.combo("Style", chosen, titles, width)) {
+        l.wanted.style =
+            styles[static_cast<std::size_t>(std::find(titles.begin(), titles.end(), chosen) - titles.begin())];
+        l.spacing = l.line_spacing = 0;
+    }
+    ui.hint("Of the hand: regular, running, an even line, or a broad edge for letters");
+}
+
+/// A field of several lines that keeps what was typed when Esc leaves it.
+void text_field(Ui& ui, Lettering& l, bool take_keyboard) {
+    const auto grow = [](ImGuiInputTextCallbackData* data) {
+        auto& all = *static_cast<std::string*>(data->UserData);
+        all.resize(static_cast<std::size_t>(data->BufTextLen));
+        data->Buf = all.data();
+        return 0;
+    };
+    std::string& text = l.wanted.text;
+    const std::string before = text;
+    if (take_keyboard) ImGui::SetKeyboardFocusHere();
+    const float height = kTextLines * ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().FramePadding.y;
+    // A field that has the keyboard would write its own text over one that was set.
+    const std::string name = "##text" + std::to_string(l.setting);
+    ImGui::InputTextMultiline(name.c_str(), text.data(), text.capacity() + 1, ImVec2(-1, height),
+                              ImGuiInputTextFlags_CallbackResize, grow, &text);
+    if (ImGui::IsKeyPressed(ImGuiKey_Escape)) text = before;
+    ui.mark("Text");
+    ui.hint("What is written; Enter begins a new line");
+}
+
+void fault_line(Ui& ui, const Message& fault) {
+    if (fault.empty()) return;
+    ImGui::PushStyleColor(
+        ImGuiCol_Text, ui.settings().theme == Theme::dark ? IM_COL32(255, 158, 115, 255) : IM_COL32(184, 26, 5, 255));
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(ui.sentence(fault).c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+    ui.mark("Text fault");
+}
+
+void style_row(Ui& ui, Lettering& l) {
+    const float half =
+        0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / ui.settings().scale;
+    choose_style(ui, l, half);
+    ImGui::SameLine();
+    ui.toggle("Own brush", l.style_brush,
+              "The style's brush in the size that suits the characters; else the brush that is chosen, as it is");
+}
+
+void source_row(Ui& ui, Lettering& l, FileDialog& files) {
+    const float gap = ImGui::GetStyle().ItemSpacing.x, all = ImGui::GetContentRegionAvail().x;
+    const bool own = !l.wanted.glyphs.empty();
+    const float room = own ? all - ui.px(34) - gap : all;
+    const std::string name = l.wanted.glyphs.filename().string();
+    const std::string title =
+        own ? ui.fitted(name, room - 2 * ImGui::GetStyle().FramePadding.x) : ui.tr("Characters from...");
+    if (ImGui::Button((title + "##glyphs").c_str(), ImVec2(room, 0)))
+        files.show(FileDialog::Purpose::glyphs, own ? l.wanted.glyphs.parent_path() : "/usr/share/fonts");
+    ui.mark("Characters from...");
+    ui.hint(
+        "A font, or a file of a folder of characters (hanzi-writer-data, KanjiVG, Make Me a Hanzi). Without one those "
+        "that are shipped");
+    if (!own) return;
+    ImGui::SameLine();
+    if (ui.button("\xc3\x97##glyphs", "Only the characters that are shipped", 34)) l.wanted.glyphs.clear();
+}
+
+void direction_row(Ui& ui, writer::Direction& direction) {
+    using enum writer::Direction;
+    struct Choice {
+        writer::Direction direction;
+        const char *name, *hint;
+    };
+    static constexpr Choice kChoices[] = {
+        {horizontal, "Across", "From left to right, lines below each other"},
+        {vertical, "Down", "From the top down, columns from right to left"},
+        {rim, "Round", "Round the model, level, through the place under the cursor"},
+        {curve, "Curve##direction", "Along the curve whose points were set last with the tool Curve"}};
+    const float gap = ui.px(2), all = ImGui::GetContentRegionAvail().x;
+    const float each = (all - 3 * gap) / 4 / ui.settings().scale;
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));
+    for (const Choice& choice : kChoices) {
+        if (choice.direction != horizontal) ImGui::SameLine(0, gap);
+        if (ui.choice(choice.name, direction == choice.direction, choice.hint, each)) direction = choice.direction;
+    }
+    ImGui::PopStyleVar();
+}
+
+}  // namespace
+
+void lettering_panel(Session& s) {
+    if (s.tools.active != Tool::text || !s.paint_thread) return;
+    Ui& ui = s.ui;
+    Lettering& l = s.tools.lettering;
+    const float pad = ui.px(10),
+                width = std::min(ui.px(kLetteringWidth), static_cast<float>(s.view.area.width) - 2 * pad);
+    ImGui::SetNextWindowPos(
+        ImVec2(static_cast<float>(s.view.area.x) + pad + ui.px(6), static_cast<float>(s.view.area.y) + pad),
+        ImGuiCond_Appearing);
+    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, 1e6f));
+    ImGui::SetNextWindowBgAlpha(0.95f);
+    ImGui::Begin((std::string(ui.tr("Write")) + "###lettering").c_str(), nullptr,
+                 ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
+                     ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::BeginDisabled(s.reported.file.viewing);
+    text_field(ui, l, ImGui::IsWindowAppearing() && l.wanted.text.empty() && !s.reported.file.viewing);
+    fault_line(ui, l.fault.empty() ? s.tools.place_fault : l.fault);
+    style_row(ui, l);
+    direction_row(ui, l.direction);
+    source_row(ui, l, s.dialogs.file);
+    if (!l.wanted.glyphs.empty())
+        ui.toggle("To their outlines", l.fit,
+                  "Strokes are fitted until their ink covers the outlines that the source states");
+    ui.toggle("Snap", s.tools.snap, "To the plane of symmetry and level with other drawings; Ctrl places it freely");
+    ImGui::SameLine();
+    ui.toggle("mm", s.tools.shows_place, "Place in millimetres");
+    if (s.tools.shows_place) place_fields(ui, s.tools);
+    ImGui::EndDisabled();
+    ImGui::End();
+}
+
+}  // namespace tuft::app

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "app/document/writing.h"
+#include "app/input/events.h"
+#include "app/session/session.h"
+
+/// \file
+/// What tools have in common that place something flat on the model. Window thread.
+namespace tuft::app {
+
+/// A point of the surface for the middle of what is placed.
+struct PlacingSpot {
+    Vec3 at, normal, eye;                        ///< metres; unit, towards the eye; unit, direction to the eye
+    std::vector<std::vector<Vec3>> guides = {};  ///< of what it snapped to
+};
+
+/// Returns the spot under the cursor, snapped where that is on; nothing off the model and under a dialog.
+std::optional<PlacingSpot> spot_at(const Session& session, const Event* cursor);
+/// Returns the spot nearest to the place that was typed.
+std::optional<PlacingSpot> typed_spot(const Session& session);
+
+/// Shows a place in the fields, metres.
+void show_place(ToolState& tools, const Vec3& at);
+
+/// Sets which points of a preview the model does not occlude.
+void find_seen(std::vector<std::vector<PreviewPoint>>& lines, const Session& session);
+
+}  // namespace tuft::app

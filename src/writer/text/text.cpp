@@ -1,0 +1,211 @@
+#include "writer/text/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "core/error.h"
+#include "stroke/drawing/drawing.h"
+#include "writer/fit/writer.h"
+
+namespace tuft::writer {
+namespace {
+
+constexpr double kTangentReach = 0.25;  // parts of the side over which the direction of a path is taken
+
+bool is_drawn(const Glyph& glyph, const Style& style) {
+    return glyph.single_line || style.kind != HandKind::brush;
+}
+
+/// The middle of a character's square, metres, y down, from its lower left corner.
+Vec2 middle_of(const Glyph& glyph, double side) {
+    return {0.5 * glyph.advance / kSide * side, -0.5 * side};
+}
+
+/// Adds the strokes of one glyph, moved by `shift` (metres, y down), with a placement where there is one.
+class Entries {
+  public:
+    Entries(std::vector<stroke::JournalEntry>& to, const Text& text, const TextHand& hand)
+        : to_(to), options_(hand.options), group_{1, text.group} {}
+
+    void add(const std::vector<WrittenStroke>& strokes, const Vec2& shift,
+             const std::optional<stroke::Placement>& placement) {
+        std::vector<stroke::RecordedStroke> recorded;
+        for (const WrittenStroke& s : strokes) {
+            stroke::RecordedStroke r;
+            static_cast<stroke::StrokeSamples&>(r) = s.trace;
+            stroke::transform_samples(r, -shift, 1);
+            if (placement) r.placement = *placement, r.placed = true;
+            r.brush = s.brush;
+            r.label = s.label;
+            r.seed = ++n_;
+            recorded.push_back(std::move(r));
+        }
+        const std::size_t first = to_.size();
+        stroke::append_entries(to_, std::move(recorded), options_);
+        for (std::size_t i = first; i < to_.size(); ++i) to_[i].group = group_;
+    }
+
+  private:
+    std::vector<stroke::JournalEntry>& to_;
+    stroke::EntryOptions options_;
+    stroke::EntryGroup group_;
+    std::uint64_t n_ = 0;
+};
+
+Writer writer_for(const Text& text, const TextHand& hand) {
+    return Writer({.style = text.style,
+                   .brush = hand.options.brush,
+                   .side = text.layout.side,
+                   .fit = hand.fit,
+                   .cache = hand.cache});
+}
+
+/// Progress of one line of several.
+ProgressFn part_of(const ProgressFn& progress, std::size_t line, std::size_t lines) {
+    if (!progress) return {};
+    return [&progress, line, lines](std::string_view phase, double fraction) {
+        return progress(phase, (static_cast<double>(line) + fraction) / static_cast<double>(lines));
+    };
+}
+
+/// Adds the lines of a glyph, moved by `shift` (metres, y down).
+void add_outlined(std::vector<std::vector<Vec2>>& lines, const Glyph& glyph, const Text& text, const Vec2& shift) {
+    const double unit = text.layout.side / kSide, slant = is_drawn(glyph, text.style) ? std::tan(text.style.slant) : 0;
+    const auto add = [&](const std::vector<Vec2>& points, bool closed) {
+        if (points.empty()) return;
+        std::vector<Vec2>& line = lines.emplace_back();
+        for (const Vec2& p : points) line.push_back(shift + unit * Vec2(p.x + slant * p.y, -p.y));
+        if (closed) line.push_back(line.front());
+    };
+    for (const Ring& ring : glyph.area) add(ring, true);
+    if (!glyph.area.empty()) return;
+    for (const GlyphStroke& stroke : glyph.strokes) add(stroke.median, false);
+}
+
+const std::vector<Glyph>& only_line(const Text& text) {
+    if (text.lines.size() != 1) throw Error(Message("round a rim and along a curve a text has one line"));
+    return text.lines.front();
+}
+
+}  // namespace
+
+bool Text::blank() const {
+    return std::none_of(lines.begin(), lines.end(), [](const auto& line) {
+        return std::any_of(line.begin(), line.end(),
+                           [](const Glyph& g) { return !g.strokes.empty() || !g.area.empty(); });
+    });
+}
+
+Text TextReader::read(const TextRequest& request) {
+    Text text{.style = load_style(request.style), .lines = {}, .layout = {}, .group = group_of(request.text)};
+    text.layout.spacing = text.style.spacing;
+    text.layout.line_spacing = text.style.line_spacing;
+    if (request.glyphs != path_) {
+        own_.reset();
+        path_.clear();
+        if (!request.glyphs.empty()) own_ = open_glyphs(request.glyphs);
+        path_ = request.glyphs;
+    }
+    if (!bundled_) bundled_ = open_glyphs(bundled_glyphs());
+    std::vector<GlyphSource*> order;
+    if (own_) order.push_back(own_.get());
+    order.push_back(bundled_.get());
+    std::vector<std::u32string> lines = lines_of(request.text);
+    while (lines.size() > 1 && lines.back().empty()) lines.pop_back();
+    text.lines = glyphs_of(lines, order);
+    return text;
+}
+
+std::string group_of(std::string_view text) {
+    std::string name;
+    for (const std::u32string& line : lines_of(text)) {
+        if (!name.empty()) name += ' ';
+        for (const char32_t c : line) name += c == '/' || c == '\\' ? " " : utf8_of(c);
+    }
+    return stroke::group_name(name);
+}
+
+Vec2 extent_of(const Text& text) {
+    LayoutOptions options = text.layout;
+    options.side = 1;
+    Vec2 lo(1e300), hi(-1e300);
+    const auto corners = place_in_lines(text.lines, options);
+    for (std::size_t l = 0; l < corners.size(); ++l)
+        for (std::size_t i = 0; i < corners[l].size(); ++i) {
+            const Vec2 c = corners[l][i];
+            lo = glm::min(lo, c - Vec2(0, 1));
+            hi = glm::max(hi, c + Vec2(text.lines[l][i].advance / kSide, 0));
+        }
+    return glm::max(hi - lo, Vec2(1e-3));
+}
+
+double length_of(const Text& text) {
+    double whole = 0;
+    for (const Glyph& g : only_line(text)) whole += text.layout.spacing * g.advance / kSide;
+    return whole;
+}
+
+void append_lines(std::vector<stroke::JournalEntry>& entries, const Text& text, const TextHand& hand,
+                  const ProgressFn& progress) {
+    Writer writer = writer_for(text, hand);
+    const auto corners = place_in_lines(text.lines, text.layout);
+    Entries to(entries, text, hand);
+    for (std::size_t l = 0; l < text.lines.size(); ++l) {
+        const auto written = writer.write(text.lines[l], part_of(progress, l, text.lines.size()));
+        for (std::size_t i = 0; i < written.size(); ++i) to.add(written[i], corners[l][i], std::nullopt);
+    }
+}
+
+void append_along(std::vector<stroke::JournalEntry>& entries, const Text& text, const ModelPath& path, double middle,
+                  const TextHand& hand, const ProgressFn& progress) {
+    const std::vector<Glyph>& glyphs = only_line(text);
+    const std::vector<stroke::Placement> places = places_along(text, path, middle);
+    const auto written = writer_for(text, hand).write(glyphs, progress);
+    Entries to(entries, text, hand);
+    for (std::size_t i = 0; i < glyphs.size(); ++i)
+        to.add(written[i], -middle_of(glyphs[i], text.layout.side), places[i]);
+}
+
+std::vector<stroke::Placement> places_along(const Text& text, const ModelPath& path, double middle) {
+    const std::vector<Glyph>& glyphs = only_line(text);
+    std::vector<stroke::Placement> out;
+    for (const double at : place_along(path, glyphs, middle, text.layout)) {
+        const PathPlace place = place_on(path, at, kTangentReach * text.layout.side);
+        out.push_back({.origin = place.position,
+                       .right = place.right,
+                       .down = glm::cross(place.right, place.normal),
+                       .mapping = stroke::SurfaceMapping::drape});
+    }
+    return out;
+}
+
+std::vector<std::vector<Vec2>> outlined_lines(const Text& text) {
+    std::vector<std::vector<Vec2>> lines;
+    const auto corners = place_in_lines(text.lines, text.layout);
+    for (std::size_t l = 0; l < text.lines.size(); ++l)
+        for (std::size_t i = 0; i < text.lines[l].size(); ++i)
+            add_outlined(lines, text.lines[l][i], text, corners[l][i]);
+    return lines;
+}
+
+std::vector<std::vector<Vec2>> middle_lines(const Text& text) {
+    std::vector<std::vector<Vec2>> lines;
+    const auto corners = place_in_lines(text.lines, text.layout);
+    for (std::size_t l = 0; l < text.lines.size(); ++l) {
+        std::vector<Vec2>& line = lines.emplace_back();
+        for (std::size_t i = 0; i < text.lines[l].size(); ++i)
+            line.push_back(corners[l][i] + middle_of(text.lines[l][i], text.layout.side));
+    }
+    return lines;
+}
+
+std::vector<std::vector<std::vector<Vec2>>> outlined_characters(const Text& text) {
+    std::vector<std::vector<std::vector<Vec2>>> out;
+    for (const Glyph& glyph : only_line(text))
+        add_outlined(out.emplace_back(), glyph, text, -middle_of(glyph, text.layout.side));
+    return out;
+}
+
+}  // namespace tuft::writer

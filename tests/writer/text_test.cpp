@@ -1,0 +1,78 @@
+#include "writer/text/text.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace tuft::writer {
+namespace {
+
+Text text_of(const std::string& text, double side = 0.02) {
+    Text out = TextReader().read({.text = text});
+    out.layout.side = side;
+    return out;
+}
+
+TEST(Text, ItsGroupIsNamedByItWithoutBreaksAndSlashes) {
+    EXPECT_EQ(group_of("a/b\nc"), "a b c");
+    EXPECT_EQ(text_of("\xe6\xb0\xb8\n\xe6\x98\xa5").group, "\xe6\xb0\xb8 \xe6\x98\xa5");
+}
+
+TEST(Text, EmptyLinesAtItsEndAreNone) {
+    EXPECT_EQ(text_of("\xe6\xb0\xb8\n\n").lines.size(), 1u);
+    EXPECT_EQ(text_of("\n\xe6\xb0\xb8").lines.size(), 2u) << "one at its beginning is a space";
+    EXPECT_TRUE(text_of("\n\n").blank());
+}
+
+TEST(Text, SourcesAreOpenedAgainOnlyWhereTheyChange) {
+    TextReader reader;
+    EXPECT_FALSE(reader.read({.text = "\xe6\xb0\xb8"}).blank());
+    EXPECT_THROW(reader.read({.text = "\xe6\xb0\xb8", .glyphs = "nowhere"}), Error);
+    EXPECT_THROW(reader.read({.text = "\xe6\xb0\xb8", .glyphs = "nowhere"}), Error) << "not taken for opened";
+    EXPECT_FALSE(reader.read({.text = "\xe6\xb0\xb8"}).blank());
+}
+
+// Two squares of side 1, `spacing` apart.
+TEST(Text, ExtentIsThatOfItsSquares) {
+    const Text text = text_of("\xe6\xb0\xb8\xe6\x98\xa5");
+    const Vec2 extent = extent_of(text);
+    EXPECT_NEAR(extent.x, 1 + text.style.spacing, 1e-12);  // rounding
+    EXPECT_NEAR(extent.y, 1, 1e-12);
+    EXPECT_NEAR(length_of(text), 2 * text.style.spacing, 1e-12);
+}
+
+TEST(Text, OutlinesLieInTheirSquares) {
+    const Text text = text_of("\xe6\xb0\xb8", 0.02);
+    const auto lines = outlined_lines(text);
+    const auto alone = outlined_characters(text);
+    ASSERT_EQ(lines.size(), text.lines[0][0].strokes.size());
+    ASSERT_EQ(alone.size(), 1u);
+    ASSERT_EQ(alone[0].size(), lines.size());
+    for (const auto& line : alone[0])
+        for (const Vec2& p : line) EXPECT_LT(std::max(std::abs(p.x), std::abs(p.y)), 0.01) << "half the side";
+    // The same lines, moved.
+    const Vec2 shift = lines[0][0] - alone[0][0][0];
+    for (std::size_t i = 0; i < lines.size(); ++i)
+        for (std::size_t k = 0; k < lines[i].size(); ++k)
+            EXPECT_NEAR(glm::distance(lines[i][k] - shift, alone[0][i][k]), 0, 1e-15);
+}
+
+TEST(Text, ALongTextIsALineForEachRow) {
+    const auto rows = middle_lines(text_of("\xe6\xb0\xb8\xe6\xb0\xb8\xe6\xb0\xb8\n\xe6\xb0\xb8"));
+    ASSERT_EQ(rows.size(), 2u);
+    EXPECT_EQ(rows[0].size(), 3u);
+    EXPECT_EQ(rows[1].size(), 1u);
+}
+
+TEST(Text, AlongAPathItHasOneLine) {
+    const ModelPath path{.points = {{0, 0, 0}, {1, 0, 0}}, .normals = {{0, 0, 1}, {0, 0, 1}}};
+    EXPECT_EQ(places_along(text_of("\xe6\xb0\xb8\xe6\x98\xa5"), path, 0.5).size(), 2u);
+    EXPECT_THROW(places_along(text_of("\xe6\xb0\xb8\n\xe6\x98\xa5"), path, 0.5), Error);
+    EXPECT_THROW(places_along(text_of("\xe6\xb0\xb8\xe6\x98\xa5", 0.9), path, 0.5), Error) << "too long";
+}
+
+}  // namespace
+}  // namespace tuft::writer
