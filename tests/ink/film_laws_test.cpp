@@ -140,14 +140,6 @@ Wicking similar_wicking() {
     return {1 / u, 2 * flux / (u * u)};
 }
 
-/// Dry rice paper with even fibres in air that is saturated; what is on the surface stays in its place.
-FilmParams even_paper() {
-    FilmParams p = film_params(load_substrate("rice-paper"), {0, 0, -1});
-    p.unevenness = p.evaporation = p.rim_evaporation = p.mobility = p.levelling = 0;
-    p.levels_ripples = false;
-    return p;
-}
-
 /// Distance from the last supplied texel at which the mean saturation along x falls below a tenth: 0.8 % of the
 /// distance short of the front, S² = ξ (ξ − x / √(D₀ t)).
 double front_along_x(const Wet& s, double edge, const FilmParams& p) {

@@ -64,6 +64,14 @@ inline FilmParams still() {
     return p;
 }
 
+/// Dry rice paper with even fibres in air that is saturated; what is on the surface stays in its place.
+inline FilmParams even_paper() {
+    FilmParams p = film_params(load_substrate("rice-paper"), {0, 0, -1});
+    p.unevenness = p.evaporation = p.rim_evaporation = p.mobility = p.levelling = 0;
+    p.levels_ripples = false;
+    return p;
+}
+
 inline double disc(const Vec3& p, double radius, double soft = 0.3e-3) {
     return std::clamp((radius - glm::length(p)) / soft + 0.5, 0.0, 1.0);
 }

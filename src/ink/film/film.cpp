@@ -516,7 +516,7 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     s.forget_relief();
     s.tension.start(params, s.map);
     s.seepage.start(params);
-    s.set_unevenness(params.unevenness);
+    s.set_unevenness(params.unevenness, params.retention);  // fibres sieve
     s.begin(canvas);
     double beads = 0;  // seconds that they have not run yet
     bool running = glm::length(params.down) > 0;

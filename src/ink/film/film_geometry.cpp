@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/noise.h"
-#include "core/random.h"
-#include "ink/elementary.h"
+#include "ink/film/fibres.h"
 #include "ink/film/film_tile.h"
 
 namespace tuft::ink::wet {
@@ -16,8 +14,6 @@ constexpr double kLeastDiagonal = 0.02;   // beside seams: less is left out, as 
 constexpr double kFlowAreaAtSeams = 0.4;  // of the area
 constexpr double kLeastInBlock = 0.5;     // of the mean area
 constexpr double kGrainDepth = 0.4;       // of the mean
-constexpr double kFlocsRms = 0.437;       // of the octaves' sum
-constexpr std::uint64_t kGrainSeed = 0x66696c6d;
 
 struct Spot {
     bool valid = false;
@@ -82,38 +78,6 @@ double diagonal(const Neighbourhood& n, int column, int row) {
     return std::max(up, down) < kLeastDiagonal ? 0 : up > down ? up : -down;
 }
 
-double lattice(std::int64_t x, std::int64_t y, std::int64_t z) {
-    const auto bits = [](std::int64_t v) { return static_cast<std::uint64_t>(v) & 0x1fffff; };
-    return uniform(kGrainSeed, bits(x) << 42 | bits(y) << 21 | bits(z));
-}
-
-/// Smooth noise of the place, −1 to 1, over `length`.
-double noise(const Vec3& position, double length) {
-    const Vec3 p = position / length, floor = glm::floor(p), f = p - floor;
-    const Vec3 s = fade(f);
-    double sum = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-        const int i = corner & 1, j = corner >> 1 & 1, k = corner >> 2;
-        const double weight = (i ? s.x : 1 - s.x) * (j ? s.y : 1 - s.y) * (k ? s.z : 1 - s.z);
-        sum += weight * lattice(static_cast<std::int64_t>(floor.x) + i, static_cast<std::int64_t>(floor.y) + j,
-                                static_cast<std::int64_t>(floor.z) + k);
-    }
-    return 2 * sum - 1;
-}
-
-/// exp(x), the same bits everywhere.
-double exponential(double x) {
-    const auto e = static_cast<double>(exp_minus(static_cast<float>(std::abs(x))));
-    return x > 0 ? 1 / e : e;
-}
-
-/// Clouds of fibres and pores as sponges and papers have them: noise of mean 0 and rms 1 in octaves.
-double flocs(const Vec3& position) {
-    const double sum = 0.5 * noise(position, 2 * kGrainLength) + 0.8 * noise(position, kGrainLength) +
-                       0.8 * noise(position, 0.5 * kGrainLength) + 0.6 * noise(position, 0.25 * kGrainLength);
-    return std::clamp(sum / kFlocsRms, -2.0, 1.5);  // what flows fastest sets the steps
-}
-
 /// Of a tile that lies off by (x, y).
 void take_borders(Neighbourhood& n, const atlas::SeamLinks& seams, std::uint32_t slot, int x, int y) {
     const auto spot = [&](int texel, int dx, int dy) -> Spot* {
@@ -146,13 +110,16 @@ Neighbourhood collect_texels(const atlas::TexelMap& map, const atlas::SeamLinks&
                                  .reach = static_cast<double>(map.reach[ref.slot]),
                                  .free = medium.free ? medium.free(ref.slot, ref.texel) : std::uint8_t{255}};
         }
+    EaseOfFlow ease(medium, map.texel_size);
     for (int row = -1; row < kSide + 1; ++row)
         for (int column = -1; column < kSide + 1; ++column) {
             set_metric(n, column, row);
             Spot& s = n.at(column, row);
             if (!s.valid) continue;
-            s.grain = 1 + kGrainDepth * noise(s.position, kGrainLength);
-            if (medium.unevenness > 0) s.ease = exponential(0.5 * medium.unevenness * flocs(s.position));
+            s.grain = 1 + kGrainDepth * place_noise(s.position, kGrainLength);
+            if (!(medium.unevenness > 0)) continue;
+            const atlas::TexelRef ref = atlas::texel_ref(map, x0 + column, y0 + row);
+            s.ease = ease.root_at(s.position, Vec3(map.normal(ref.slot, ref.texel)));
         }
     const auto tiles = static_cast<std::int64_t>(map.tiles_per_side);
     for (std::int64_t y = std::max<std::int64_t>(y0 / kSide - 1, 0); y < std::min(y0 / kSide + 2, tiles); ++y)
@@ -208,10 +175,6 @@ float sum_at(const Geometry& g, int t) {
 }
 
 }  // namespace
-
-double ease_of_flow(const Vec3& position, double unevenness) {
-    return exponential(unevenness * flocs(position));
-}
 
 double passing(std::uint8_t free_a, std::uint8_t free_b) {
     if (free_a == 0 || free_b == 0) return free_a == free_b;

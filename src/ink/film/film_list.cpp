@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/system/parallel.h"
+#include "ink/film/fibres.h"
 
 namespace tuft::ink::wet {
 namespace {
@@ -125,9 +126,10 @@ void TileList::find_link_areas() {
             link_areas_.push_back(static_cast<float>(std::min(part(slot, l.texel), part(l.other_slot, l.other_texel))));
 }
 
-void TileList::set_unevenness(double unevenness) {
-    if (unevenness == medium_.unevenness) return;
+void TileList::set_unevenness(double unevenness, double fibrous) {
+    if (unevenness == medium_.unevenness && fibrous == medium_.fibrous) return;
     medium_.unevenness = unevenness;
+    medium_.fibrous = fibrous;
     search_again();
 }
 
@@ -140,14 +142,15 @@ void TileList::set_free(WetFilm::FreeFn free) {
 void TileList::search_again() {
     for (auto& g : geometry) g.reset();
     for (auto& g : split_geometry) g.reset();
-    const auto root = [&](std::uint32_t slot, int texel) {
-        return std::sqrt(ease_of_flow(Vec3(map.position(slot, texel)), medium_.unevenness));
+    EaseOfFlow ease(medium_, map.texel_size), beyond(medium_, map.texel_size);
+    const auto root = [&](EaseOfFlow& of, std::uint32_t slot, int texel) {
+        return of.root_at(Vec3(map.position(slot, texel)), Vec3(map.normal(slot, texel)));
     };
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
         for (std::uint32_t i = seams.start[slot]; i < seams.start[slot + 1]; ++i) {
             atlas::SeamLink& l = seams.links[i];
             double weight = static_cast<double>(weights_[i]);
-            if (medium_.unevenness > 0) weight *= root(slot, l.texel) * root(l.other_slot, l.other_texel);
+            if (medium_.unevenness > 0) weight *= root(ease, slot, l.texel) * root(beyond, l.other_slot, l.other_texel);
             if (medium_.free) weight *= passing(medium_.free(slot, l.texel), medium_.free(l.other_slot, l.other_texel));
             l.weight = static_cast<float>(weight);
         }

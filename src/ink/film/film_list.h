@@ -86,8 +86,8 @@ struct TileList {
 
     TileList(const atlas::TexelMap& m, atlas::SeamLinks s);
 
-    /// Sets the unevenness of the surface (`ease_of_flow`). Costly when it changes.
-    void set_unevenness(double unevenness);
+    /// Sets the unevenness of the surface, and how fibrous it is (`EaseOfFlow`). Costly when it changes.
+    void set_unevenness(double unevenness, double fibrous);
     /// Sets the stencil. Costly when it changes.
     void set_free(WetFilm::FreeFn free);
     const FlowMedium& medium() const { return medium_; }

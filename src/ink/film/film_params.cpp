@@ -8,11 +8,11 @@
 namespace tuft::ink {
 namespace {
 
-constexpr double kLeastMixing = 2e-10;  // m²/s
-constexpr double kStirring = 0.02;      // film units: mixing over mobility
-constexpr double kMostUneven = 1.2;
-constexpr double kFilmHeight = 10e-6;  // metres: relief over which flow is as uneven as half of that
-constexpr double kRimLength = 1e-3;    // metres: what the rim of a wet spot adds to its area, as for drying
+constexpr double kLeastMixing = 2e-10;            // m²/s
+constexpr double kStirring = 0.02;                // film units: mixing over mobility
+constexpr double kOfClouds = 1, kOfFibres = 1.3;  // of unevenness, on relief that is far higher than kFilmHeight
+constexpr double kFilmHeight = 10e-6;             // metres: relief over which flow is as uneven as half of that
+constexpr double kRimLength = 1e-3;               // metres: what the rim of a wet spot adds to its area, as for drying
 
 /// Without a radius of its pores, `diffusion` is that of full pores.
 double suction_of(const Substrate& substrate, const FilmParams& p) {
@@ -43,8 +43,8 @@ FilmParams film_params(const Substrate& substrate, const Vec3& down) {
     p.rim_evaporation = p.evaporation * static_cast<double>(substrate.edge) * kRimLength;
     p.stain = p.pores / (p.pores + 2);
     if (substrate.pores > 0)
-        p.unevenness =
-            kMostUneven * static_cast<double>(substrate.relief) / (static_cast<double>(substrate.relief) + kFilmHeight);
+        p.unevenness = (kOfClouds + kOfFibres * p.retention) * static_cast<double>(substrate.relief) /
+                       (static_cast<double>(substrate.relief) + kFilmHeight);
     if (glm::length(down) > 0) p.down = glm::normalize(down);
     return p;
 }

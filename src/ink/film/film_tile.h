@@ -71,7 +71,8 @@ struct alignas(64) Geometry {
 };
 /// Surface that the liquid flows over.
 struct FlowMedium {
-    double unevenness = 0;  ///< rms of the logarithm of the mobility, see `ease_of_flow`
+    double unevenness = 0;  ///< rms of the logarithm of the mobility, see `EaseOfFlow`
+    double fibrous = 0;     ///< 0–1: part of its square that fibres have, clouds the rest
     WetFilm::FreeFn free;   ///< fraction of a texel that the stencils leave free; empty: all
 };
 /// Returns the fraction of the flow that passes between two texels of the given free fractions; 0 over a stencil
@@ -79,9 +80,6 @@ struct FlowMedium {
 double passing(std::uint8_t free_a, std::uint8_t free_b);
 Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot,
                        const FlowMedium& medium);
-/// Returns the relative mobility at a position: exp(unevenness n), n noise of mean 0 and rms 1 over 0.6 to 2.4 mm,
-/// −2 to 1.5. On a plane the effective large-scale mobility is the geometric mean, 1 (Dykhne 1971).
-double ease_of_flow(const Vec3& position, double unevenness);
 
 /// A tile's faces in two parts.
 struct SplitGeometry {

@@ -16,6 +16,7 @@ constexpr double kFreshStep = 0.05;  // seconds
 constexpr float kRounding = 1e-5f;
 constexpr float kMostNear = 8;         // of what smears between two texels, over that of whole texels side by side
 constexpr float kMostSmeared = 0.04f;  // of the lesser amount, times the link's weight
+constexpr float kHalfHeld = 0.1f;      // pigment over liquid at which fibres hold half of what they hold of thick ink
 constexpr Plane kDry{};
 
 /// Stages of a step in which (with one stage) `part` of a texel would leave it; kMostStages at most.
@@ -163,7 +164,7 @@ double Seepage::solve(const TileList& tiles, std::span<const Sources> sources, d
     parallel_for(tiles_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             smear_links(*tiles_[i]);
-            find_carried(*tiles_[i], tiles);
+            find_carried(*tiles_[i], tiles, sources[tiles_[i]->place]);
         }
     });
     return dt;
@@ -179,12 +180,15 @@ void Seepage::smear_links(SeepTile& tile) const {
     }
 }
 
-void Seepage::find_carried(SeepTile& tile, const TileList& tiles) const {
-    const auto passing = static_cast<float>(1 - params_.retention), grip = static_cast<float>(params_.grip);
-    Plane rate;
+void Seepage::find_carried(SeepTile& tile, const TileList& tiles, const Sources& from) const {
+    const auto retention = static_cast<float>(params_.retention), grip = static_cast<float>(params_.grip);
+    Plane pigments{}, rate;
+    for (const Plane* open : from.open)
+        for (int i = 0; open && i < kTexels; ++i) pigments[i] += (*open)[i];
     for (int i = 0; i < kTexels; ++i) {
-        const float total = tile.film[i] + tile.start[i];
-        rate[i] = total > 0 ? passing / std::max(total, grip) : 0;
+        const float total = tile.film[i] + tile.start[i],
+                    held = retention * pigments[i] / (pigments[i] + kHalfHeld * total + kRounding);
+        rate[i] = total > 0 ? (1 - held) / std::max(total, grip) : 0;
     }
     limit_carried(tile, *tiles.list[tile.place].geometry, last_, rate);
 }

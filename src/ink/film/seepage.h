@@ -117,7 +117,7 @@ class Seepage {
     bool run_stages(const TileList& tiles, double flow, double soak, int n_stages);
     void run_stage(const TileList& tiles, SeepTile& tile, int from, const SeepStage& stage) const;
     void smear_links(SeepTile& tile) const;
-    void find_carried(SeepTile& tile, const TileList& tiles) const;
+    void find_carried(SeepTile& tile, const TileList& tiles, const Sources& from) const;
     static constexpr int kStart = 2, kCarried = 3;  // instead of 0 and 1, the last two stages
     static const float* plane_of(const SeepTile& tile, int plane);
     /// With a border from the tiles around; 0 where there are none.
