@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kGrainSeed = 0x66696c6d, kFibreSeed = 0x66696272;
 constexpr double kFlocsRms = 0.437;  // of the octaves' sum
-constexpr double kLeastEase = -2, kMostEase = 1.5;
+constexpr double kLeastEase = -2, kMostEase = 1.2;
 
 // Bast fibres of raw paper are 2 to 3 mm long and 0.01 mm thick, those of straw 1 mm; they lie in bundles.
 constexpr double kShortest = 0.5e-3, kLongest = 1e-3;  // half the length, metres

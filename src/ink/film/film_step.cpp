@@ -7,6 +7,7 @@ namespace tuft::ink::wet {
 namespace {
 
 constexpr double kLongestStep = 0.25;  // seconds: between flow, soaking and drying
+constexpr double kLongestSoaked = 1;   // the same where nothing stands on the surface
 // What may leave a texel in one step, of what it has: less than all of it together.
 constexpr double kFlowPart = 0.5, kMixingPart = 0.2;
 // What links add to the stiffness k of a tile's own faces, 4 at least: of what a texel has less than kFlowPart (k +
@@ -60,7 +61,7 @@ Chosen choose_step(const FilmParams& p, const TileList& tiles, double texel_size
     }
     const double stiffness = all.stiffness;
     Chosen out;
-    double dt = beads ? kBeadStep : kLongestStep;
+    double dt = beads ? kBeadStep : all.w > 0 ? kLongestStep : kLongestSoaked;
     const double flow = all.rate(p, levelling, area, on_relief);
     if (flow > 0) dt = std::min(dt, kFlowPart / flow);
     const double mixing = p.mixing / area * stiffness;

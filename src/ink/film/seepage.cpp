@@ -24,6 +24,11 @@ int stages_of(double part) {
     const double n = std::ceil(0.5 * (std::sqrt(9 + 16 * part) - 3) * (1 - 1e-9));
     return static_cast<int>(std::clamp(n, 1.0, static_cast<double>(kMostStages)));
 }
+bool all_zero(std::span<const float> plane) {
+    float most = 0;
+    for (const float v : plane) most = std::max(most, std::abs(v));
+    return !(most > 0);
+}
 double part_of(int n_stages) {
     return (n_stages * n_stages + 3 * n_stages) / 4.0;
 }
@@ -79,6 +84,8 @@ void Seepage::open_tile(SeepTile& tile, const Active& active) const {
         open[i] = tile.around[i] == kNone ? kDry.data() : kAll.data();
     }
     gather_field(tile.open, open);
+    tile.fed = !all_zero({tile.film, kTexels});
+    tile.starts_dry = !tile.fed && all_zero({tile.start, kTexels});
     tile.links.clear();
     for (std::size_t i = 0; i < active.links.size(); ++i) {
         const atlas::SeamLink& l = active.links[i];
@@ -107,6 +114,9 @@ bool Seepage::run_stages(const TileList& tiles, double flow, double soak, int n_
     parallel_for(tiles_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             SeepTile& t = *tiles_[i];
+            t.dry = t.starts_dry;
+            if (t.dry) t.s = {};
+            t.least = 0;
             t.faces = {};
             t.soaked = {};
             for (SeepLink& l : t.links) l.through = {};
@@ -130,13 +140,22 @@ bool Seepage::run_stages(const TileList& tiles, double flow, double soak, int n_
     return std::all_of(tiles_.begin(), tiles_.end(), [](const auto& t) { return t->least >= -kRounding; });
 }
 
+bool Seepage::reached(const SeepTile& tile, const Field& s, int from) const {
+    return !all_zero(s) || std::any_of(tile.links.begin(), tile.links.end(), [&](const SeepLink& l) {
+        return plane_of(*tiles_[l.other], from)[l.other_texel] != 0;
+    });
+}
+
 void Seepage::run_stage(const TileList& tiles, SeepTile& tile, int from, const SeepStage& stage) const {
+    const Field s = padded(tile, from);
+    if (tile.dry && !reached(tile, s, from)) return;
+    tile.dry = false;
     for (const SeepLink& l : tile.links) tile.beyond[l.texel] = 0;
     for (SeepLink& l : tile.links) {
         seep_over_link(l, plane_of(tile, from)[l.texel], plane_of(*tiles_[l.other], from)[l.other_texel], stage);
         tile.beyond[l.texel] += l.through[static_cast<std::size_t>(1 - stage.from)];
     }
-    seep_stage(tile, padded(tile, from), *tiles.list[tile.place].geometry, stage);
+    seep_stage(tile, s, *tiles.list[tile.place].geometry, stage);
 }
 
 double Seepage::fresh_step(const atlas::TexelMap& map) const {
@@ -163,6 +182,7 @@ double Seepage::solve(const TileList& tiles, std::span<const Sources> sources, d
         dt *= 0.5;
     parallel_for(tiles_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
+            if (tiles_[i]->dry) continue;
             smear_links(*tiles_[i]);
             find_carried(*tiles_[i], tiles, sources[tiles_[i]->place]);
         }

@@ -48,6 +48,9 @@ struct SeepTile {
     Plane beyond{};                         ///< Σ over seams of what goes out
     Plane carried{};                        ///< fraction of a texel's pigments that one unit of what leaves it carries
     std::vector<SeepLink> links;
+    bool fed = true;          ///< something is on the surface
+    bool starts_dry = false;  ///< nothing is there before the step
+    bool dry = false;         ///< nor came there up to now
     float least = 0, most = 0;
 };
 
@@ -96,9 +99,10 @@ class Seepage {
     double fresh_step(const atlas::TexelMap& map) const;
     /// Finds what flows on those tiles in `dt` seconds or the first part of it. Returns the seconds.
     double solve(const TileList& tiles, std::span<const Sources> sources, double dt);
-    /// Of a place in the list; null: not among those tiles.
+    /// Of a place in the list; null: nothing flows there.
     const SeepTile* tile(std::uint32_t place) const {
-        return set_of_[place] == kNone ? nullptr : tiles_[set_of_[place]].get();
+        const std::uint32_t i = set_of_[place];
+        return i == kNone || tiles_[i]->dry ? nullptr : tiles_[i].get();
     }
     /// Sets the flow of a tile of the set in `work` and `crossing`, as `fluxes` and `wet::cross_seams` do.
     void flow(std::uint32_t place, const TileList& tiles, std::span<const Sources> sources, int pigments, Work& work,
@@ -116,6 +120,8 @@ class Seepage {
     /// `flow`, `soak`: of the whole step. Whether all amounts are positive.
     bool run_stages(const TileList& tiles, double flow, double soak, int n_stages);
     void run_stage(const TileList& tiles, SeepTile& tile, int from, const SeepStage& stage) const;
+    /// Whether liquid reaches a tile from those beside it or over seams; `s`: plane `from` with its border.
+    bool reached(const SeepTile& tile, const Field& s, int from) const;
     void smear_links(SeepTile& tile) const;
     void find_carried(SeepTile& tile, const TileList& tiles, const Sources& from) const;
     static constexpr int kStart = 2, kCarried = 3;  // instead of 0 and 1, the last two stages

@@ -184,7 +184,7 @@ void seep_stage(SeepTile& tile, const Field& s, const Geometry& g, const SeepSta
     if (g.gd) stage_of_diagonals(tile.faces[to], tile.faces[from], head.data(), tile.open.data(), g, stage);
     alignas(64) std::array<float, kTexels> sum;
     sum_of_faces(sum.data(), tile.faces[to], g);
-    stage_of_soaking(tile.soaked[to].data(), tile.soaked[from].data(), tile.film, s.data(), stage);
+    if (tile.fed) stage_of_soaking(tile.soaked[to].data(), tile.soaked[from].data(), tile.film, s.data(), stage);
     const Bounds bounds = take_amounts(tile.s[to].data(), tile.start, tile.soaked[to].data(), sum.data(),
                                        tile.beyond.data(), g.inverse.data());
     tile.least = bounds.least;
