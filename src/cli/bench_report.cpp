@@ -40,6 +40,14 @@ bool is_markdown(const Bench& a) {
     return a.report.extension() == ".md";
 }
 
+std::string facts_line(const json& j) {
+    const std::string commit = j.value("commit", "");
+    return fmt::format("{}, {} cores, {}; tuft {}{}; {} {}; {}, {:.1f} processes at work", j.value("machine", ""),
+                       j.value("cores", 0), j.value("isa", ""), j.value("version", ""),
+                       commit.empty() ? "" : " " + commit, j.value("compiler", ""), j.value("build_type", ""),
+                       j.value("date", ""), j.value("load", 0.0));
+}
+
 /// The figures to compare with; nothing where there are none.
 std::optional<json> earlier_figures(const Bench& a) {
     const fs::path file = a.against.empty() ? beside(a, ".json") : a.against;
@@ -48,9 +56,14 @@ std::optional<json> earlier_figures(const Bench& a) {
     const std::vector<char> bytes = read_file(file, kMaxBytes);
     const std::string text(bytes.begin(), bytes.end());
     check_json_nesting(text, file.string());
+    const Error none(file.string(), "holds no figures of a report of 'tuft bench'");
     json j = json::parse(text, nullptr, false);
-    if (!j.is_object() || j.value("format", json()) != kFormat)
-        throw Error(file.string(), "holds no figures of a report of 'tuft bench'");
+    if (!j.is_object() || j.value("format", json()) != kFormat) throw none;
+    try {
+        facts_line(j);  // now, not after minutes of measuring
+    } catch (const json::exception&) {
+        throw none;
+    }
     return j;
 }
 
@@ -180,14 +193,6 @@ std::vector<NamedPlot> plots_of(const json& j) {
                                                      {"texel map", m.at("texel_map_seconds")},
                                                      {"cluster graph", m.at("cluster_graph_seconds")}})});
     return plots;
-}
-
-std::string facts_line(const json& j) {
-    const std::string commit = j.value("commit", "");
-    return fmt::format("{}, {} cores, {}; tuft {}{}; {} {}; {}, {:.1f} processes at work", j.value("machine", ""),
-                       j.value("cores", 0), j.value("isa", ""), j.value("version", ""),
-                       commit.empty() ? "" : " " + commit, j.value("compiler", ""), j.value("build_type", ""),
-                       j.value("date", ""), j.value("load", 0.0));
 }
 
 std::string ratio_text(const Line& line) {

@@ -22,6 +22,7 @@ constexpr double kFlicker = 1.8;          // counts that a position at rest flic
 constexpr double kCountError = 0.5;       // counts between a measured and a true position
 constexpr double kCountedShare = 0.3;     // of a change of force that is counted at once
 constexpr double kMostAcceleration = 60;  // m/s², of a hand
+constexpr double kMostTurning = 500;      // rad/s², of a wrist
 constexpr double kFree = 1e-3;            // N below which a force is none
 
 /// `v` no longer than `most`.
@@ -129,19 +130,33 @@ double tank_stiffness(const LawOptions& options) {
     return std::min(options.limits.max_stiffness / options.scale, kTankStiffness * coupling_of(options));
 }
 
-/// Step 6: the greatest force along `u` that the tank lets out.
-double most_force(const LawOptions& options, const LawState& s, const Vec3& moved, const Vec3& u) {
-    const double tank = std::max(0.0, s.tank - s.repaid);
-    const double k = tank_stiffness(options);
-    const double count = options.limits.count * options.scale;
+/// e′, J.
+double energy_left(const LawState& s, const Vec3& moved) {
     double pending = 0;  // what forces on their way will take, if the hand goes on
     for (std::size_t i = 1; i <= s.delayed; ++i) pending += std::max(0.0, glm::dot(sent(s, i), moved));
-    const double left = std::max(0.0, tank - pending);
-    // The path along the force that the hand can make while it acts.
-    const double ahead = glm::dot(moved, u) + kMostAcceleration * T * T * static_cast<double>(1 + s.delayed) + count;
+    return std::max(0.0, std::max(0.0, s.tank - s.repaid) - pending);
+}
+
+/// a: the path along `u` that the hand can make while a force acts, m.
+double path_ahead(const LawOptions& options, const LawState& s, const Vec3& moved, const Vec3& u) {
+    const double count = options.limits.count * options.scale;
+    return glm::dot(moved, u) + kMostAcceleration * T * T * static_cast<double>(1 + s.delayed) + count;
+}
+
+/// Step 6: the greatest force along a path `ahead` that the tank lets out.
+double most_force(const LawOptions& options, double left, double ahead) {
+    const double k = tank_stiffness(options);
     if (ahead <= 0) return std::sqrt(2 * k * left) - k * ahead;  // against it, the tank only fills
     if (left < k * ahead * ahead) return left / ahead;
     return std::sqrt(2 * k * left - k * k * ahead * ahead);
+}
+
+/// Step 6 of a moment, which may take `left` J while the wrist goes on turning by `turned` a period.
+Vec3 limited_moment(const Vec3& moment, double left, const Vec3& turned) {
+    const double size = glm::length(moment);
+    if (!(size > 0)) return moment;
+    const double ahead = glm::dot(turned, moment / size) + kMostTurning * T * T;
+    return ahead > 0 ? limited(moment, left / ahead) : moment;
 }
 
 }  // namespace
@@ -169,7 +184,7 @@ void restart_law(LawState& state, const Vec3& arm, const Quat& rotation) {
 LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     if (!s.started) restart_law(s, in.arm, in.rotation);
     const double K = coupling_of(options), B = 2 * std::sqrt(K * kRootMass), m = kRootMass;
-    const Vec3 moved = in.arm - s.arm;
+    const Vec3 moved = in.arm - s.arm, turned = turn_between(s.rotation, in.rotation);
     s.delayed = static_cast<std::size_t>(std::clamp(std::ceil(options.delay / T - 1e-9), 0.0, kMostDelayed));
     settle_tank(options, s, in);
     s.arm_velocity += (moved / T - s.arm_velocity) * (1 - std::exp(-T / kVelocityTime));
@@ -195,9 +210,11 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
 
     const bool touching = in.hair && (in.hair->touching || held.hard || in.hair->force != Vec3{0});
     s.coupled = 0.5 * K * glm::dot(stretch, stretch) + 0.5 * m * glm::dot(velocity, velocity);
+    const bool was_free = s.free;
     s.free = !touching && glm::length(s.offset) < kFree;
+    // A spring that the fade drew out is no income, nor is what came in before the contact and is not in the coupling.
+    if (s.free || was_free) s.tank = std::clamp(s.tank, kTankFull, kTankFull + s.coupled);
     if (s.free) {
-        s.tank = std::clamp(s.tank, kTankFull, kTankFull + s.coupled);  // a spring that the fade drew out is no income
         s.lent = s.repaid = 0;
         s.restored *= 1 - T / kRestoreTime;
     }
@@ -205,16 +222,17 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     // What the hair lost is not kept for later; hair that has taken a set may have less than none.
     s.tank = std::min(s.tank, s.repaid + kTankFull + std::max(0.0, stored) + s.coupled);
     LawOutput out{.root = root, .hard = held.hard};
-    const double size = glm::length(f);
-    if (size > 0) {
-        const double most = most_force(options, s, moved, f / size);
+    double left = energy_left(s, moved);
+    if (const double size = glm::length(f); size > 0) {
+        const double ahead = path_ahead(options, s, moved, f / size), most = most_force(options, left, ahead);
         out.limited = size > most;
         if (out.limited) f = limited(f, most);
+        left = std::max(0.0, left - glm::length(f) * std::max(0.0, ahead));
     }
     const double kept = wanted > 0 ? glm::length(f) / wanted : in.pass;
     s.force = f;
     s.sent[s.n_sent++ % s.sent.size()] = f;
-    s.moment = in.hair ? kept * (gain * in.hair->moment + held.moment) : Vec3{0};
+    s.moment = in.hair ? limited_moment(kept * (gain * in.hair->moment + held.moment), left, turned) : Vec3{0};
     out.force = f;
     if (options.limits.max_torque > 0) out.torque = limited(s.moment, options.limits.max_torque);
     return out;

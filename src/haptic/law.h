@@ -31,15 +31,17 @@
 ///    count of the measured one, so that by Abel's summation the second term, of f₋ smoothed over three of its motions,
 ///    bounds what the count hides.
 ///    e <= r + e_0 + G stored + ½ K |y − x − s|² + ½ m v². When free, e is at least e_0, r is 0 and no hair stores
-///    anything. e_0 is lent: r of it, as much as has come in since, stays in the tank. An empty tank is filled to
-///    0.5 µJ, with 0.8 µJ at most in a contact, from which a hand that presses fills it by itself.
+///    anything; in the first period of a contact no hair has stored anything yet. e_0 is lent: r of it, as much as has
+///    come in since, stays in the tank. An empty tank is filled to 0.5 µJ, with 0.8 µJ at most in a contact, from which
+///    a hand that presses fills it by itself.
 ///
 ///        |f| <= e′ / a where e′ < k a², else √(2 k e′ − k² a²);   a = Δx · f̂ + 60 m/s² T² + count,
 ///
 ///    e_0 = 30 µJ, k = min(k_max, 1.25 K); e′ is e − r less what forces on their way will take. A force that ends with
 ///    its energy so falls by k a a period at most. Where a < 0 the tank only fills: |f| <= √(2 k e′) − k a.
+///    |G τ| <= (e′ − |f| a) / (Δθ · τ̂ + 500 rad/s² T²): hair that works on the wrist does so from the same tank.
 ///
-/// It holds while the hand accelerates by less than 60 m/s².
+/// It holds while the hand accelerates by less than 60 m/s² and the wrist by less than 500 rad/s².
 namespace tuft::haptic {
 
 struct LawOptions {
