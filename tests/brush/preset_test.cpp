@@ -110,7 +110,8 @@ TEST(Presets, PointedTuftsHaveFineTipsAndRoundBellies) {
     for (const std::string& name : list_presets()) {
         const Preset p = load_preset(name);
         if (p.spines > 1 || p.tip_power < 1 || is_foam(p)) continue;  // cut straight
-        EXPECT_LE(rest_radius(p, 1), 0.15e-3) << name;                // a 0.3 mm line
+        // Of measured brushes with 30 mm of hair a touch draws no finer than 0.5 mm: their hair ends within 0.5 mm.
+        EXPECT_LE(rest_radius(p, 1), 0.008 * p.length) << name;
         EXPECT_NEAR(rest_radius(p, 0.25), p.radius, 0.1 * p.radius) << name;
         EXPECT_GT(rest_radius(p, 0.6), 0.5 * p.radius) << name;
         for (double u = 0.3; u < 1; u += 0.01) EXPECT_LT(rest_radius(p, u + 0.01), rest_radius(p, u)) << name;

@@ -28,8 +28,9 @@ TEST(Sweep, ABrushOfAnotherSizeDrawsTheSameLineInThatSize) {
                 const double depth = part * p.length, other = factor * depth;
                 const double width = sweep_depth(p, std::span(&depth, 1)).front().width;
                 const double of_other = sweep_depth(q, std::span(&other, 1)).front().width;
-                // Similar, but for the sweep's steps in millimetres and the damping in seconds.
-                EXPECT_NEAR(of_other, factor * width, 1e-4 * std::max(1.0, factor))
+                // Similar, but for the force that flattens, which has a limit in newtons, and the damping in seconds:
+                // within the thickness of a hair.
+                EXPECT_NEAR(of_other, factor * width, 1.1e-4 * std::max(1.0, factor))
                     << name << " x " << factor << " at " << part;
             }
         }
@@ -42,7 +43,7 @@ TEST(Sweep, LinesWidenEvenlyWithDepth) {
         std::vector<double> depths;
         for (int i = 0; i <= 20; ++i) depths.push_back(0.022 * i * p.length);
         const std::vector<SweepRow> rows = sweep_depth(p, depths);
-        EXPECT_LT(rows[0].width, 0.3e-3);
+        EXPECT_LT(rows[0].width, 2.1 * p.tip_radius) << name << ": a touch draws the ends of the hair";
         for (std::size_t i = 1; i < rows.size(); ++i) {
             EXPECT_GE(rows[i].width, rows[i - 1].width) << name << " " << i;
             // No wiggles: a step never exceeds three times a mean step.
@@ -84,9 +85,10 @@ TEST(Sweep, Robot2020DrawsTheMeasuredLines) {
 }
 
 /// A brush with the drop that surface tension holds at its point against the ink's column in it: ρ = 2γ / (ρ g L) of
-/// water, 0.072 N/m.
+/// water, 0.072 N/m. The hair of its point is fine: a blunt one draws as wide by itself.
 Preset with_drop(const std::string& name) {
     Preset p = load_preset(name);
+    p.tip_radius = 9e-5;
     p.tip_drop = 2 * 0.072 / (1000 * 9.81 * p.length);
     return p;
 }
@@ -95,8 +97,27 @@ TEST(Sweep, ALightPressDrawsAsWideAsMeasuredBrushes) {
     // Two brushes on robots drew 0.85 and 1.8 mm at 1 mm of depth. The width of a line repeats to 1.4 mm over all
     // depths and is read to 0.5 mm, so a light line is known to no better than a quarter.
     const auto width = [](const Preset& p, double depth) { return sweep_at(p, depth).row.width; };
-    EXPECT_NEAR(width(with_drop("mixed-medium"), 1e-3), 0.85e-3, 0.25 * 0.85e-3);
+    EXPECT_NEAR(width(load_preset("mixed-medium"), 1e-3), 0.85e-3, 0.25 * 0.85e-3);
     EXPECT_NEAR(width(load_preset("robot-2020"), 1e-3), 1.8e-3, 0.25 * 1.8e-3);
+    EXPECT_NEAR(width(with_drop("mixed-medium"), 1e-3), 0.85e-3, 0.25 * 0.85e-3);
+}
+
+TEST(Sweep, TheFootOfWidthOverDepthHasNoKnob) {
+    // A line that a light press begins is nowhere wider than what follows: else its head would be a ball on a neck. A
+    // drawn width repeats to a hundredth of a millimetre.
+    for (const char* name : {"goat-small", "goat-medium", "goat-large", "mixed-medium", "wolf-medium", "robot-2020"}) {
+        const Preset p = load_preset(name);
+        double before = 0;
+        for (int i = 0; i <= 12; ++i) {
+            const double width = sweep_at(p, p.length * i / 160).row.width;
+            EXPECT_GT(width, before - 1e-5) << name << " " << i;
+            before = width;
+        }
+    }
+}
+
+TEST(Sweep, ADropAtThePointWidensLightLinesAlone) {
+    const auto width = [](const Preset& p, double depth) { return sweep_at(p, depth).row.width; };
     for (const char* name : {"goat-medium", "mixed-medium", "wolf-medium", "robot-2020"}) {
         const Preset p = with_drop(name);
         Preset dry = p;

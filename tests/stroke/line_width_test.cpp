@@ -56,7 +56,7 @@ TEST(LineWidth, ALineIsAsWideAsTheDrawingHasIt) {
     for (const char* brush : {"wolf-small", "goat-medium", "robot-2020"})
         for (const double width : {0.001, 0.0025, 0.004}) {
             const LineWidths widths(brush::load_preset(brush));
-            if (width < widths.least()) continue;  // of robot-2020, whose wet point draws 1.3 mm
+            if (width < widths.least()) continue;  // of goat-medium and robot-2020, whose points draw 1.2 mm
             PaintStroke stroke = straight(brush, width, 0.3);
             draw_to_width(stroke.trace, widths);
             // A texel of 60 µm to both sides, and 5 % for the table's chords and the friction that sampled motion has.

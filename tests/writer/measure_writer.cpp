@@ -1,11 +1,12 @@
 // Measures the writer on characters of a folder of hanzi-writer-data:
 //   measure_writer sides DATA CHARACTERS                     features and measured sides of each stroke, a line each
 //   measure_writer score DATA CHARACTERS [--fit 1] [--brush NAME] [--side MM] [--tries N] [--step UNITS] [--verbose 1]
-//                                                          [--weak FOLDER] [--plain 1]
+//                                                          [--weak FOLDER] [--plain 1] [--drawn FOLDER]
 //   measure_writer copy DATA CHARACTERS                      strokes that are found again in a picture of the character
 // CHARACTERS is a file. --weak writes a picture (.ppm) of each stroke below 0.92 (--below): wanted grey, missing red,
 // extra blue, the path of the brush green. --plain takes the cue of the head off the centre lines: a first segment of
-// less than 60 units, as sources without it (KanjiVG) have them. `score` draws the writer's strokes on a plane, without
+// less than 60 units, as sources without it (KanjiVG) have them. --drawn writes each character as it is drawn (.pgm, a
+// pixel a unit, for score_painted.py --drawn). `score` draws the writer's strokes on a plane, without
 // texels, and compares their union with the outlines in cells of 2 units; score_painted.py compares what `tuft write`
 // painted.
 #include <fmt/format.h>
@@ -55,6 +56,16 @@ Cells square() {
     Cells cells{.lo = Vec2(-100), .cell = 2, .width = 612, .height = 612};
     cells.inside.assign(std::size_t(cells.width) * cells.height, 0);
     return cells;
+}
+
+constexpr int kPage = 1280, kPageMargin = 128;  // pixels, as in score_painted.py
+
+/// Adds the ink of a stroke to a page of one unit a pixel.
+void add_to_page(std::string& page, const stroke::PlaneInk& ink, double unit) {
+    for (int j = 0; j < kPage; ++j)
+        for (int i = 0; i < kPage; ++i)
+            if (ink.at(unit * Vec2(i + 0.5 - kPageMargin, 1024 + kPageMargin - j - 0.5)) > 0.5)
+                page[std::size_t(j) * kPage + i] = 0;
 }
 
 /// Writes the difference of a stroke's ink from its outline, and the path of the brush.
@@ -196,10 +207,12 @@ int main(int argc, char** argv) {
         const std::vector<WrittenStroke> written = writer.write({glyph}).front();
         seconds += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
         Cells truth = square(), drawn = square();
+        std::string page(std::size_t(kPage) * kPage, static_cast<char>(255));
         for (std::size_t s = 0; s < written.size(); ++s) {
             fill(truth, glyph.strokes[s].outline);
             const stroke::PlaneInk ink = stroke::plane_ink(written[s].trace, hand.preset, hand.hold,
                                                            number("step", 5) * hand.unit, 2 * hand.unit);
+            if (options.contains("drawn")) add_to_page(page, ink, hand.unit);
             Cells own = square();
             fill(own, glyph.strokes[s].outline);
             Overlap overlap;
@@ -217,6 +230,10 @@ int main(int argc, char** argv) {
             if (options.contains("weak") && overlap.iou() < number("below", 0.92))
                 write_weak(fmt::format("{}/{:.3f}-{}-{}.ppm", options["weak"], overlap.iou(), utf8_of(code), s + 1),
                            own, ink_cells, written[s].trace, hand.unit);
+        }
+        if (options.contains("drawn")) {
+            page.insert(0, fmt::format("P5\n{} {}\n255\n", kPage, kPage));
+            write_file(options["drawn"] + "/" + utf8_of(code) + ".pgm", page.data(), page.size());
         }
         Overlap whole;
         for (std::size_t i = 0; i < truth.inside.size(); ++i) whole.add(truth.inside[i], drawn.inside[i]);

@@ -22,25 +22,30 @@ constexpr double kLight = 0.3, kHeavy = 0.7;  // a pressure between them draws l
 
 }  // namespace
 
-LineWidths::LineWidths(const brush::Preset& preset) : widths_(kSteps + 1, 0.0) {
-    std::vector<double> depths;
-    for (int i = 1; i <= kSteps; ++i) depths.push_back(working_depth(preset) * i / kSteps);
+LineWidths::LineWidths(const brush::Preset& preset) : knots_{{0, 0}} {
+    std::vector<double> pressures{kLightest}, depths;
+    for (int i = 1; i <= kSteps; ++i) pressures.push_back(static_cast<double>(i) / kSteps);
+    for (const double p : pressures) depths.push_back(p * working_depth(preset));
     const std::vector<brush::SweepRow> rows = brush::sweep_depth(preset, depths);
-    for (std::size_t i = 0; i < rows.size(); ++i) widths_[i + 1] = std::max(widths_[i], rows[i].width + 2 * kSkinFilm);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        knots_.push_back({pressures[i], std::max(knots_.back().width, rows[i].width + 2 * kSkinFilm)});
 }
 
 double LineWidths::at(double pressure) const {
-    const double x = std::clamp(pressure, 0.0, 1.0) * kSteps;
-    const auto i = std::min(static_cast<std::size_t>(x), widths_.size() - 2);
-    return std::lerp(widths_[i], widths_[i + 1], x - static_cast<double>(i));
+    const double p = std::clamp(pressure, 0.0, 1.0);
+    std::size_t i = 1;
+    while (i + 1 < knots_.size() && knots_[i].pressure < p) ++i;
+    const Knot &a = knots_[i - 1], &b = knots_[i];
+    return std::lerp(a.width, b.width, (p - a.pressure) / (b.pressure - a.pressure));
 }
 
 double LineWidths::pressure(double width) const {
-    const auto above = std::find_if(widths_.begin() + 1, widths_.end(), [&](double w) { return w >= width; });
-    if (above == widths_.end()) return 1;
-    const double below = *(above - 1), rise = *above - below;
-    const double part = rise > 0 ? std::max(0.0, width - below) / rise : 0;
-    return std::max(kLightest, (static_cast<double>(above - 1 - widths_.begin()) + part) / kSteps);
+    const auto above = std::find_if(knots_.begin() + 1, knots_.end(), [&](const Knot& k) { return k.width >= width; });
+    if (above == knots_.end()) return 1;
+    const Knot& below = *(above - 1);
+    const double rise = above->width - below.width;
+    const double part = rise > 0 ? std::max(0.0, width - below.width) / rise : 0;
+    return std::max(kLightest, std::lerp(below.pressure, above->pressure, part));
 }
 
 const LineWidths& WidthTables::of(const std::string& brush) {

@@ -14,8 +14,8 @@ namespace tuft::stroke {
 
 inline constexpr double kSkinFilm = 0.1e-3;  ///< metres of ink round wet hair
 
-/// Width of the straight line that a wet, upright brush draws, by pressure: `brush::sweep_depth` at twelve depths up to
-/// the working depth, linear between them, monotone, plus `kSkinFilm` on both sides.
+/// Width of the straight line that a wet, upright brush draws, by pressure: `brush::sweep_depth` at the lightest and at
+/// twelve more depths up to the working depth, linear between them, monotone, plus `kSkinFilm` on both sides.
 class LineWidths {
   public:
     static constexpr double kLightest = 0.05;  ///< least pressure of a line without gaps
@@ -31,7 +31,10 @@ class LineWidths {
     double most() const { return at(1); }
 
   private:
-    std::vector<double> widths_;  // metres, at pressures i / 12
+    struct Knot {
+        double pressure = 0, width = 0;  // width in metres
+    };
+    std::vector<Knot> knots_;  // ascending in pressure, from 0 to 1
 };
 
 /// Widths, presets and holders of brushes by name, each made at its first use. Throws `Error` as `brush::load_preset`.
