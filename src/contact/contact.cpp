@@ -51,22 +51,22 @@ double move_off_surface(Step& w) {
     return inside;
 }
 
-std::vector<Vec3> section_centres(const brush::Branch& branch) {
-    std::vector<Vec3> out;
+Recycled<Vec3> section_centres(const brush::Branch& branch) {
+    Recycled<Vec3> out;
     for (const brush::Section& s : branch.sections) out.push_back(s.centre);
     return out;
 }
 
 /// Contacts of the tuft's nodes, tip first, spine after spine, each from the ferrule; sub-spines, which follow in the
 /// list, start from the trunk.
-std::vector<NodeContact> find_tuft_contacts(const Step& w, const brush::Tuft& tuft, std::span<const Vec3> nodes,
-                                            std::span<const NodeContact> before = {}) {
-    std::vector<NodeContact> out;
+Recycled<NodeContact> find_tuft_contacts(const Step& w, const brush::TuftBend& tuft, std::span<const Vec3> nodes,
+                                         std::span<const NodeContact> before = {}) {
+    Recycled<NodeContact> out;
     for (const brush::Spine& spine : tuft.spines) {
         const std::size_t first = out.size(), count = spine.rest_radius.size();
         const auto known =
             before.size() >= first + count ? before.subspan(first, count) : std::span<const NodeContact>{};
-        const std::vector<NodeContact> own =
+        const Recycled<NodeContact> own =
             find_chain_contacts(w.surface, w.root, nodes.subspan(first, count), w.near, w.search, known);
         out.insert(out.end(), own.begin(), own.end());
     }
@@ -76,7 +76,7 @@ std::vector<NodeContact> find_tuft_contacts(const Step& w, const brush::Tuft& tu
     for (std::size_t first = trunk; first < nodes.size(); first += sub_spine) {
         const auto points = nodes.subspan(first, sub_spine);
         const NodeContact& start = out[std::min(sub_spine, trunk) - 1];  // the trunk's node they leave from
-        const std::vector<NodeContact> more = find_chain_contacts(w.surface, start, points, w.near, w.search);
+        const Recycled<NodeContact> more = find_chain_contacts(w.surface, start, points, w.near, w.search);
         out.insert(out.end(), more.begin(), more.end());
     }
     return out;
@@ -99,8 +99,8 @@ ContactPlane refresh_plane(const ContactPlane& old, const NodeContact& now, cons
 }
 
 /// Radii at rest of the nodes of all spines, in their order, metres.
-std::vector<double> node_radii(const brush::Tuft& tuft) {
-    std::vector<double> out;
+Recycled<double> node_radii(const brush::Tuft& tuft) {
+    Recycled<double> out;
     for (const brush::Spine& spine : tuft.spines)
         out.insert(out.end(), spine.rest_radius.rbegin(), spine.rest_radius.rend());
     return out;
@@ -108,12 +108,11 @@ std::vector<double> node_radii(const brush::Tuft& tuft) {
 
 /// Walls that the side nodes of the spines meet: a ray from the spine to a little beyond each, where
 /// the spine is near a surface. Empty where there is none.
-std::vector<ContactPlane> find_side_walls(const Step& w, const brush::Tuft& tuft,
-                                          std::span<const NodeContact> contacts) {
+Recycled<ContactPlane> find_side_walls(const Step& w, const brush::Tuft& tuft, std::span<const NodeContact> contacts) {
     constexpr double kBeyond = 1e-3;  // metres a side may grow in one step
-    const std::vector<Vec3> sides = brush::predicted_sides(tuft, w.pose);
-    const std::vector<double> radii = node_radii(tuft);
-    std::vector<ContactPlane> walls;
+    const Recycled<Vec3> sides = brush::predicted_sides(tuft, w.pose);
+    const Recycled<double> radii = node_radii(tuft);
+    Recycled<ContactPlane> walls;
     if (sides.size() != 2 * radii.size() || contacts.size() < radii.size()) return walls;
     for (std::size_t k = 0; k < sides.size(); ++k) {
         const NodeContact& node = contacts[k / 2];
@@ -136,26 +135,27 @@ std::vector<ContactPlane> find_side_walls(const Step& w, const brush::Tuft& tuft
 
 /// Solves, looks where the nodes came to rest, and solves again where their planes were off.
 /// `planes`: those of the last solve. `rest`: contacts of the spines where they lie now, or empty.
-brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, std::vector<ContactPlane>& planes,
-                       std::vector<NodeContact>& rest) {
-    const std::vector<double> radii = node_radii(tuft);
+brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, Recycled<ContactPlane>& planes,
+                       Recycled<NodeContact>& rest) {
+    const Recycled<double> radii = node_radii(tuft);
     const double root_radius = radii[tuft.trunk().rest_radius.size() - 1];
     const bool was_split = tuft.split;
-    const std::vector<Vec3> nodes = brush::predicted_nodes(tuft, w.pose);
-    const std::vector<NodeContact> predicted = find_tuft_contacts(w, tuft, nodes);
+    const Recycled<Vec3> nodes = brush::predicted_nodes(tuft, w.pose);
+    const Recycled<NodeContact> predicted = find_tuft_contacts(w, tuft, nodes);
     for (const NodeContact& c : predicted) planes.push_back(c.wedge);
-    const std::vector<ContactPlane> walls = find_side_walls(w, tuft, predicted);
+    const Recycled<ContactPlane> walls = find_side_walls(w, tuft, predicted);
     if (w.options.max_refreshes <= 0) return brush::step(tuft, w.pose, planes, dt, walls);
 
-    const brush::Tuft before = tuft;
+    thread_local brush::TuftBend before, solved;  // keep their memory
+    before = tuft;
     brush::TuftState state = brush::step(tuft, w.pose, planes, dt, walls);
     for (int pass = 0; pass < w.options.max_refreshes && state.touching; ++pass) {
-        const std::vector<Vec3> now = brush::predicted_nodes(tuft, w.pose);
+        const Recycled<Vec3> now = brush::predicted_nodes(tuft, w.pose);
         if (tuft.split != was_split && now.size() < nodes.size()) break;
         const auto compared = std::span(now).first(nodes.size());
-        const std::vector<NodeContact> contacts = find_tuft_contacts(w, before, compared, predicted);
+        const Recycled<NodeContact> contacts = find_tuft_contacts(w, before, compared, predicted);
         double worst = 0;
-        std::vector<ContactPlane> fresh = planes;
+        Recycled<ContactPlane> fresh = planes;
         for (std::size_t i = 0; i < planes.size(); ++i) {
             const double radius = i < radii.size() ? radii[i] : root_radius;
             const double z = brush::height_over(planes[i], compared[i]);
@@ -170,7 +170,8 @@ brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, std::vector<
             break;
         }
         std::swap(planes, fresh);  // `fresh` now holds those of the solve before
-        brush::Tuft solved = std::exchange(tuft, before);
+        std::swap(static_cast<brush::TuftBend&>(tuft), solved);
+        static_cast<brush::TuftBend&>(tuft) = before;
         brush::TuftState former = std::move(state);
         state = brush::step(tuft, w.pose, planes, dt, walls);
         state.iterations += former.iterations;
@@ -179,7 +180,7 @@ brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, std::vector<
         if (!state.converged && former.converged) {
             former.iterations = state.iterations;
             planes = std::move(fresh);
-            tuft = std::move(solved);
+            std::swap(static_cast<brush::TuftBend&>(tuft), solved);
             state = std::move(former);
             break;
         }
@@ -203,12 +204,11 @@ brush::TuftState solve_by_vertices(const Step& w, brush::Tuft& tuft, double dt, 
 /// Contacts of every section of every branch of the solved tuft. Of a whole tuft these are the contacts of the rod's
 /// nodes, from which the sections' centres differ along the planes' normals, and along the surface by what friction
 /// drags the sides. `trunk` holds them if they are known.
-std::vector<std::vector<NodeContact>> find_section_contacts(const Step& w, const brush::Tuft& solved,
-                                                            const brush::TuftState& tuft,
-                                                            std::vector<NodeContact> trunk) {
-    std::vector<std::vector<NodeContact>> out;
+Recycled<Recycled<NodeContact>> find_section_contacts(const Step& w, const brush::Tuft& solved,
+                                                      const brush::TuftState& tuft, Recycled<NodeContact> trunk) {
+    Recycled<Recycled<NodeContact>> out;
     if (tuft.branches.size() == 1) {
-        const std::vector<Vec3> nodes = brush::predicted_nodes(solved, w.pose);
+        const Recycled<Vec3> nodes = brush::predicted_nodes(solved, w.pose);
         const std::size_t count = tuft.branches[0].sections.size();
         if (trunk.size() != count && nodes.size() >= count)
             trunk = find_chain_contacts(w.surface, w.root, std::span(nodes).first(count), w.near, w.search);
@@ -216,7 +216,7 @@ std::vector<std::vector<NodeContact>> find_section_contacts(const Step& w, const
         return out;
     }
     if (tuft.wide) {
-        const std::vector<Vec3> nodes = brush::predicted_nodes(solved, w.pose);
+        const Recycled<Vec3> nodes = brush::predicted_nodes(solved, w.pose);
         if (trunk.size() != nodes.size()) trunk = find_tuft_contacts(w, solved, nodes);
         for (std::size_t b = 0, first = 0; b < tuft.branches.size(); ++b) {
             const auto begin = trunk.begin() + static_cast<long>(first);
@@ -227,17 +227,17 @@ std::vector<std::vector<NodeContact>> find_section_contacts(const Step& w, const
         return out;
     }
     // The branch that reaches the ferrule first; the others start where it is nearest.
-    std::vector<std::size_t> order;
+    Recycled<std::size_t> order;
     for (std::size_t b = 0; b < tuft.branches.size(); ++b) order.push_back(b);
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
         return tuft.branches[a].sections.size() > tuft.branches[b].sections.size();
     });
     out.resize(tuft.branches.size());
     for (const std::size_t b : order) {
-        const std::vector<Vec3> points = section_centres(tuft.branches[b]);
+        const Recycled<Vec3> points = section_centres(tuft.branches[b]);
         NodeContact start = w.root;
         if (b != order.front() && !points.empty()) {
-            const std::vector<NodeContact>& first = out[order.front()];
+            const Recycled<NodeContact>& first = out[order.front()];
             const std::size_t at = std::min(points.size(), first.size());
             if (at > 0) start = first[at - 1];
         }
@@ -277,14 +277,14 @@ struct ContactSums {
 };
 
 /// `centres`: of all sections now; `before`: at the last sample, or empty.
-ContactSums sum_sections(const std::vector<std::vector<NodeContact>>& contacts, const brush::TuftState& tuft,
+ContactSums sum_sections(const Recycled<Recycled<NodeContact>>& contacts, const brush::TuftState& tuft,
                          std::span<const Vec3> centres, std::span<const Vec3> before) {
     ContactSums out;
     out.gap = std::numeric_limits<double>::infinity();
     std::size_t at_centre = 0;
     double most = 0;
     for (std::size_t b = 0; b < contacts.size(); ++b) {
-        const std::vector<brush::Section>& sections = tuft.branches[b].sections;
+        const Recycled<brush::Section>& sections = tuft.branches[b].sections;
         for (std::size_t i = 0; i < sections.size(); ++i) {
             const NodeContact& node = contacts[b][i];
             const std::size_t k = at_centre++;
@@ -311,8 +311,8 @@ ContactSums sum_sections(const std::vector<std::vector<NodeContact>>& contacts, 
 
 /// Finds the contact frame under the middle of the touching sections, and the distance to touch. The weights of the
 /// sections let it move continuously.
-void find_frame(const Step& w, const std::vector<std::vector<NodeContact>>& contacts, Memory& memory, Result& result) {
-    std::vector<Vec3> centres;
+void find_frame(const Step& w, const Recycled<Recycled<NodeContact>>& contacts, Memory& memory, Result& result) {
+    Recycled<Vec3> centres;
     for (const brush::Branch& branch : result.tuft.branches)
         for (const brush::Section& s : branch.sections) centres.push_back(s.centre);
     const bool followed = memory.touching && memory.centres.size() == centres.size() && !w.tip_jumped;
@@ -382,11 +382,11 @@ void step_in_air(brush::Tuft& tuft, const Step& w, const StepInput& input, Resul
 /// Bends the tuft on the surface and finds frame, planes and travel.
 void step_on_surface(brush::Tuft& tuft, Step& w, double dt, Memory& memory, Result& result) {
     const brush::Preset& preset = tuft.preset;
-    std::vector<NodeContact> rest;
+    Recycled<NodeContact> rest;
     result.tuft = w.options.method == Method::exact ? solve(w, tuft, dt, result.planes, rest)
                                                     : solve_by_vertices(w, tuft, dt, result);
-    const std::vector<std::vector<NodeContact>> contacts = find_section_contacts(w, tuft, result.tuft, std::move(rest));
-    for (const std::vector<NodeContact>& branch : contacts) {
+    const Recycled<Recycled<NodeContact>> contacts = find_section_contacts(w, tuft, result.tuft, std::move(rest));
+    for (const Recycled<NodeContact>& branch : contacts) {
         result.branch_planes.emplace_back();
         for (const NodeContact& c : branch) result.branch_planes.back().push_back(c.plane);
     }
@@ -405,7 +405,7 @@ Result take_step(brush::Tuft& tuft, const mesh::SurfaceQuery& surface, Memory& m
     Result result;
     const brush::Preset& preset = tuft.preset;
     const Options& options = input.options;
-    std::vector<Vec3> nodes = brush::predicted_nodes(tuft, input.pose);
+    Recycled<Vec3> nodes = brush::predicted_nodes(tuft, input.pose);
     // A wide ferrule reaches half its width to the sides; its nodes lie within that of each other's.
     const double thick =
         1.2 * preset.radius * std::max(1.0, preset.flatten_max) + 0.5 * preset.width / std::max(1, preset.spines);

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <vector>
-
 #include "brush/tuft/tuft.h"
 #include "contact/near_vertices.h"
+#include "core/system/recycled.h"
 #include "mesh/query/surface_query.h"
 
 /// \file
@@ -31,21 +30,21 @@ struct Options {
 
 /// Contact state of one stroke, from sample to sample.
 struct Memory {
-    bool touching = false;      ///< at the last sample
-    Vec3 root{0};               ///< ferrule's mouth at the last sample, metres
-    Vec3 outside{0};            ///< root, or its projection in front of the surface
-    double side = 1;            ///< -1: on the back of an open sheet
-    Vec3 heading{1, 0, 0};      ///< unit, t of the last contact frame
-    Vec3 origin{0};             ///< of the last contact frame
-    std::vector<Vec3> centres;  ///< of all sections at the last sample, metres
+    bool touching = false;   ///< at the last sample
+    Vec3 root{0};            ///< ferrule's mouth at the last sample, metres
+    Vec3 outside{0};         ///< root, or its projection in front of the surface
+    double side = 1;         ///< -1: on the back of an open sheet
+    Vec3 heading{1, 0, 0};   ///< unit, t of the last contact frame
+    Vec3 origin{0};          ///< of the last contact frame
+    Recycled<Vec3> centres;  ///< of all sections at the last sample, metres
 };
 
 /// Contact at one pose.
 struct Result {
-    brush::TuftState tuft;                    ///< bent
-    std::vector<brush::ContactPlane> planes;  ///< of the last solve: one per node, one for all, or none
+    brush::TuftState tuft;                 ///< bent
+    Recycled<brush::ContactPlane> planes;  ///< of the last solve: one per node, one for all, or none
     /// [branch][section], tip first, as tuft.branches; empty when nothing is near.
-    std::vector<std::vector<brush::ContactPlane>> branch_planes;
+    Recycled<Recycled<brush::ContactPlane>> branch_planes;
     /// On the surface under the contact patch, n outward; t is parallel-transported from the previous stamp;
     /// moves with the hair.
     Frame frame;

@@ -151,10 +151,10 @@ NodeContact find_node_contact(const mesh::SurfaceQuery& surface, const NodeQuery
     return out;
 }
 
-std::vector<NodeContact> find_chain_contacts(const mesh::SurfaceQuery& surface, const NodeContact& root,
-                                             std::span<const Vec3> nodes, double near,
-                                             const NodeContactOptions& options, std::span<const NodeContact> before) {
-    std::vector<NodeContact> out(nodes.size());
+Recycled<NodeContact> find_chain_contacts(const mesh::SurfaceQuery& surface, const NodeContact& root,
+                                          std::span<const Vec3> nodes, double near, const NodeContactOptions& options,
+                                          std::span<const NodeContact> before) {
+    Recycled<NodeContact> out(nodes.size());
     NodeContact last = root;
     Vec3 searched_at = root.outside;
     double clearance = root.triangle == kNone ? options.reach : root.height;

@@ -2,9 +2,9 @@
 
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "brush/state/tuft_state.h"
+#include "core/system/recycled.h"
 #include "mesh/query/surface_query.h"
 
 /// \file
@@ -46,10 +46,9 @@ NodeContact find_node_contact(const mesh::SurfaceQuery& surface, const NodeQuery
 /// one, from the root outwards. Nodes farther than `near` metres from any surface share the last plane found; their
 /// height over it is at most their distance from the surface. `before`, if not empty, holds the previous contacts of
 /// the same nodes and only makes the search faster.
-std::vector<NodeContact> find_chain_contacts(const mesh::SurfaceQuery& surface, const NodeContact& root,
-                                             std::span<const Vec3> nodes, double near,
-                                             const NodeContactOptions& options,
-                                             std::span<const NodeContact> before = {});
+Recycled<NodeContact> find_chain_contacts(const mesh::SurfaceQuery& surface, const NodeContact& root,
+                                          std::span<const Vec3> nodes, double near, const NodeContactOptions& options,
+                                          std::span<const NodeContact> before = {});
 
 /// Returns a point outside the object for a tuft at `root` whose handle points along `up`. It is the root, or,
 /// inside a closed object, the exit point of the handle.

@@ -11,6 +11,7 @@
 #include <set>
 #include <thread>
 
+#include "core/system/recycled.h"
 #include "haptic/exchange.h"
 
 namespace tuft::haptic {
@@ -92,7 +93,7 @@ struct Loop::State {
     Servo servo;
     std::atomic<bool> running{false}, released{false};
     std::atomic<int> with_priority{0};
-    std::atomic<std::uint64_t> unconverged{0};
+    std::atomic<std::uint64_t> unconverged{0}, solver_allocations{0};
     Semaphore posed, answered;
     TripleBuffer<RootPose> pose;
     TripleBuffer<HairAnswer> answer;
@@ -112,6 +113,7 @@ struct Loop::State {
     bool locked = false;
 
     State(Device& d, HairSolver s, const LoopOptions& o) : device(d), solver(std::move(s)), options(o), servo(o.law) {}
+    std::uint64_t allocations() const { return options.count_allocations ? options.count_allocations() : 0; }
     void run_servo();
     void report(LoopStatus& now, const ServoOutput& out, const RootPose& asked, const DeviceState* state);
     void remember_force(const Vec3& force);
@@ -169,7 +171,6 @@ void Loop::State::run_servo() {
     const std::int64_t begin = now_ns();
     std::int64_t due = begin + kPeriodNs;
     std::uint64_t tick = 0;
-    const auto allocations = [&] { return options.count_allocations ? options.count_allocations() : 0; };
     const std::uint64_t allocated = allocations();
     while (running.load(std::memory_order_relaxed)) {
         const timespec until = timespec_of(due);
@@ -191,7 +192,7 @@ void Loop::State::run_servo() {
         const ServoOutput out = servo.finish(any ? &newest : nullptr);
         device.send(out.command);
         now.cycle.add(1e-9 * static_cast<double>(now_ns() - due));
-        now.allocations = allocations() - allocated;
+        now.allocations = allocations() - allocated + solver_allocations.load(std::memory_order_relaxed);
         report(now, out, asked, fresh ? &state : nullptr);
         remember_force(out.force);
         if (options.record) {
@@ -215,6 +216,10 @@ void Loop::State::run_servo() {
 void Loop::State::run_solver() {
     with_priority += take_priority(options.solver_priority);
     prefault_stack();
+    constexpr std::size_t kLargestBlock = 64 * 1024;  // bytes; a wide tuft's largest buffer takes 40 kB
+    constexpr int kBlocks = 24;                       // of each size, that a solve has in use at once, at most
+    fill_block_store(kLargestBlock, kBlocks);
+    const std::uint64_t allocated = allocations();
     while (true) {
         posed.wait();
         if (!running.load(std::memory_order_relaxed)) return;
@@ -225,6 +230,7 @@ void Loop::State::run_solver() {
         const HairAnswer found = solver.solve(asked);
         answer.write(found);
         answered.post();
+        solver_allocations.store(allocations() - allocated, std::memory_order_relaxed);
         if (!found.converged) unconverged.fetch_add(1, std::memory_order_relaxed);
         solved.push({asked, found.touching});
         if (options.record) solved_ticks.push(asked.tick);

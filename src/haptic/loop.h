@@ -57,7 +57,7 @@ struct LoopStatus {
     std::uint64_t late_solves = 0;  ///< answers that came after 0.6 ms
     std::uint64_t lost_poses = 0;   ///< that did not fit into the queue to the painting
     std::uint64_t unconverged = 0;  ///< solves that ended at their limits
-    std::uint64_t allocations = 0;  ///< of the servo's thread since its first period
+    std::uint64_t allocations = 0;  ///< of both threads since their first period
     LatenessHistogram cycle;        ///< from the time a period is due to its force being sent
 };
 

@@ -263,7 +263,7 @@ Pose press_and_drag(SpineModel& model, const Preset& p, double depth, const Vec3
     return pose;
 }
 
-std::vector<double> bends_of(const std::vector<Vec3>& nodes, const Vec3& axis) {
+std::vector<double> bends_of(const Recycled<Vec3>& nodes, const Vec3& axis) {
     std::vector<double> bend;
     Vec3 inner = axis;
     for (std::size_t k = nodes.size() - 1; k-- > 0;) {
@@ -316,7 +316,7 @@ TEST(Chain, SegmentsKeepTheirLengths) {
     const auto model = make_chain_model(p);
     press_and_drag(*model, p, 0.4 * p.length, {0.03, 0.01, 0}, 60);
     const std::vector<double> length = spine_segments(p.segments, 0.25 + 0.75 * p.hardness);
-    const std::vector<Vec3> x = model->nodes();
+    const Recycled<Vec3> x = model->nodes();
     for (std::size_t j = 0; j < length.size(); ++j)
         EXPECT_NEAR(glm::length(x[x.size() - 2 - j] - x[x.size() - 1 - j]), length[j] * p.length, 1e-14);
 }

@@ -13,12 +13,12 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// K straight rods side by side, `pitch` apart along x, of stiffness 1/K each, hanging along −z.
 struct Row {
-    std::vector<Rod> rods;
-    std::vector<Memory> memories;
-    std::vector<Clamp> clamps;
-    std::vector<PairMemory> pair_memories;
-    std::vector<std::vector<double>> touching;
-    std::vector<Obstacle> obstacles;
+    Recycled<Rod> rods;
+    Recycled<Memory> memories;
+    Recycled<Clamp> clamps;
+    Recycled<PairMemory> pair_memories;
+    Recycled<Recycled<double>> touching;
+    Recycled<Obstacle> obstacles;
     Law law;
     CouplingLaw coupling;
     Load load;
@@ -33,10 +33,10 @@ struct Row {
             memories.push_back(make_memory(rod, clamps.back()));
         }
         pair_memories.resize(count - 1);
-        touching.assign(count - 1, std::vector<double>(n + 1, pitch));
+        touching.assign(count - 1, Recycled<double>(n + 1, pitch));
     }
-    std::vector<CoupledRod> problem() {
-        std::vector<CoupledRod> out;
+    Recycled<CoupledRod> problem() {
+        Recycled<CoupledRod> out;
         for (std::size_t k = 0; k < rods.size(); ++k) {
             Load own = load;
             own.tip_force /= static_cast<double>(rods.size());
@@ -44,8 +44,8 @@ struct Row {
         }
         return out;
     }
-    std::vector<CoupledPair> pairs() {
-        std::vector<CoupledPair> out;
+    Recycled<CoupledPair> pairs() {
+        Recycled<CoupledPair> out;
         for (std::size_t k = 0; k + 1 < rods.size(); ++k)
             out.push_back(
                 {static_cast<int>(k), static_cast<int>(k + 1), {1, 0}, touching[k], {}, {}, {}, {}, &pair_memories[k]});
@@ -97,7 +97,7 @@ TEST(CoupledRods, UncoupledRodsBearWhatOneBears) {
         const Vec3 tangent = glm::normalize(Vec3{0, 0.3, -1});
         for (Clamp& c : row.clamps) c = {{c.position.x, -0.01 * i, down}, tangent, {1, 0, 0}};
         const Clamp clamp{{0, -0.01 * i, down}, tangent, {1, 0, 0}};
-        std::vector<Obstacle> obstacles = row.obstacles;
+        Recycled<Obstacle> obstacles = row.obstacles;
         const Result alone = solve(one, memory, clamp, {.obstacles = obstacles, .law = law});
         const CoupledResult all = row.solve();
         Vec3 force{0};
@@ -156,7 +156,7 @@ TEST(CoupledRods, WetFilmZipsTwoRodsFromAGap) {
     constexpr double kFineLength = 0.42, stiffness = 0.5, film = 0.2, touching = 0.02;
     for (const double gap : {0.014, 0.02, 0.028}) {
         // Short segments where the film opens.
-        std::vector<double> lengths(kFine, kFineLength / kFine);
+        Recycled<double> lengths(kFine, kFineLength / kFine);
         lengths.insert(lengths.end(), kSegments - kFine, (1 - kFineLength) / (kSegments - kFine));
         Row row(2, touching + gap, kSegments);
         row.touching[0].assign(kSegments + 1, touching);

@@ -18,7 +18,7 @@ constexpr double kLedge = 8e-3;  // m, height of the walls: over it the hand lea
 /// Walls of the side nodes: those that the floor's y-axis meets at `left` and `right`; infinite:
 /// none.
 std::vector<ContactPlane> walls_beside(const Tuft& tuft, const Pose& pose, double left, double right) {
-    const std::vector<Vec3> sides = predicted_sides(tuft, pose), nodes = predicted_nodes(tuft, pose);
+    const Recycled<Vec3> sides = predicted_sides(tuft, pose), nodes = predicted_nodes(tuft, pose);
     std::vector<ContactPlane> walls;
     for (std::size_t k = 0; k < sides.size(); ++k) {
         const bool to_left = sides[k].y > nodes[k / 2].y;

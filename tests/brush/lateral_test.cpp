@@ -14,8 +14,8 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// Nodes of a tuft 32 mm long, closer towards the tip.
-std::vector<double> nodes(int n) {
-    std::vector<double> at(n + 1);
+Recycled<double> nodes(int n) {
+    Recycled<double> at(n + 1);
     for (int i = 0; i <= n; ++i) {
         const double x = static_cast<double>(i) / n;
         at[i] = 0.032 * x * (1.3 - 0.3 * x);
@@ -23,7 +23,7 @@ std::vector<double> nodes(int n) {
     return at;
 }
 
-LateralSide pushed(const std::vector<double>& at, double force) {
+LateralSide pushed(const Recycled<double>& at, double force) {
     LateralSide side;
     side.push.assign(at.size(), force);
     side.clear.assign(at.size(), kNone);
@@ -31,15 +31,15 @@ LateralSide pushed(const std::vector<double>& at, double force) {
 }
 
 /// Radii of a tuft that ends in a point.
-std::vector<double> pointed(const std::vector<double>& at) {
-    std::vector<double> r;
+Recycled<double> pointed(const Recycled<double>& at) {
+    Recycled<double> r;
     for (const double x : at) r.push_back(3.5e-3 * std::max(0.02, 1 - x / at.back()));
     return r;
 }
 
 TEST(Lateral, SolutionIsTheMinimumOfTheSpringsEnergy) {
     Random random(5);
-    const std::vector<double> at = nodes(16);
+    const Recycled<double> at = nodes(16);
     LateralSprings springs{2e4, 1.5e4, 2.5e-3, 100, {}};
     for (int trial = 0; trial < 20; ++trial) {
         if (trial == 10) springs.taper = pointed(at);
@@ -49,12 +49,12 @@ TEST(Lateral, SolutionIsTheMinimumOfTheSpringsEnergy) {
             for (std::size_t i = 5; i < 9; ++i) side.clear[i] = random.uniform(-1e-4, 1e-3);
         }
         if (trial % 3 == 2) side.root = random.uniform(-1e-3, 3e-3);
-        const std::vector<double> u = solve_lateral(at, springs, side);
+        const Recycled<double> u = solve_lateral(at, springs, side);
         EXPECT_EQ(u[0], side.root);
         const LateralEnergy best = lateral_energy(at, springs, side, u);
         for (std::size_t i = 1; i < u.size(); ++i) EXPECT_NEAR(best.gradient[i], 0, 1e-9);  // N, of 0.05
         for (int other = 0; other < 5; ++other) {
-            std::vector<double> v = u;
+            Recycled<double> v = u;
             for (std::size_t i = 1; i < v.size(); ++i) v[i] += random.uniform(-1e-4, 1e-4);
             EXPECT_GT(lateral_energy(at, springs, side, v).value, best.value);
         }
@@ -63,16 +63,16 @@ TEST(Lateral, SolutionIsTheMinimumOfTheSpringsEnergy) {
 
 TEST(Lateral, GradientMatchesFiniteDifferences) {
     Random random(7);
-    const std::vector<double> at = nodes(12);
+    const Recycled<double> at = nodes(12);
     const LateralSprings springs{2e4, 1.5e4, 2.5e-3, 100, pointed(at)};
     LateralSide side = pushed(at, 20);
     side.clear[6] = 1e-4;
-    std::vector<double> u(at.size(), 0);
+    Recycled<double> u(at.size(), 0);
     for (std::size_t i = 1; i < u.size(); ++i) u[i] = random.uniform(-5e-4, 1e-3);
     const LateralEnergy here = lateral_energy(at, springs, side, u);
     for (std::size_t i = 1; i < u.size(); ++i) {
         constexpr double h = 1e-7;
-        std::vector<double> v = u;
+        Recycled<double> v = u;
         v[i] = u[i] + h;
         const double up = lateral_energy(at, springs, side, v).value;
         v[i] = u[i] - h;
@@ -84,9 +84,9 @@ TEST(Lateral, GradientMatchesFiniteDifferences) {
 
 TEST(Lateral, AnEvenPushFollowsTheClosedForm) {
     // κ (1 - λ² d²/dx²)² u = q with u = u' = 0 at one end of a long row: u = q/κ (1 - (1 + s) e^{-s}), s = x / λ.
-    const std::vector<double> at = nodes(64);
+    const Recycled<double> at = nodes(64);
     const LateralSprings springs{1e4, 1e4, 2e-3, 100, {}};
-    const std::vector<double> u = solve_lateral(at, springs, pushed(at, 10));
+    const Recycled<double> u = solve_lateral(at, springs, pushed(at, 10));
     for (std::size_t i = 1; i < u.size(); ++i) {
         const double s = at[i] / springs.reach;
         EXPECT_NEAR(u[i], 1e-3 * (1 - (1 + s) * std::exp(-s)), 0.015e-3) << i;  // second order in steps of a third of λ
@@ -94,14 +94,14 @@ TEST(Lateral, AnEvenPushFollowsTheClosedForm) {
 }
 
 TEST(Lateral, APushOutwardsDrawsNothingIn) {
-    const std::vector<double> at = nodes(24);
+    const Recycled<double> at = nodes(24);
     LateralSprings springs{1e4, 1e4, 2e-3, 100, {}};
     for (const bool taper : {false, true}) {
         if (taper) springs.taper = pointed(at);
         for (std::size_t node = 1; node < at.size(); ++node) {
             LateralSide side = pushed(at, 0);
             side.push[node] = 50;
-            const std::vector<double> u = solve_lateral(at, springs, side);
+            const Recycled<double> u = solve_lateral(at, springs, side);
             // Up to the error of second differences where nodes lie a third of λ apart.
             for (std::size_t i = 1; i < u.size(); ++i)
                 EXPECT_GT(u[i], -1e-3 * u[node]) << taper << " " << node << " " << i;
@@ -110,11 +110,11 @@ TEST(Lateral, APushOutwardsDrawsNothingIn) {
 }
 
 TEST(Lateral, NeighboursSmoothAPushAtOneNode) {
-    const std::vector<double> at = nodes(16);
+    const Recycled<double> at = nodes(16);
     const LateralSprings springs{2e4, 2e4, 3e-3, 100, {}};
     LateralSide side = pushed(at, 0);
     side.push[8] = 100;
-    const std::vector<double> u = solve_lateral(at, springs, side);
+    const Recycled<double> u = solve_lateral(at, springs, side);
     EXPECT_GT(u[7], 0.4 * u[8]);
     EXPECT_GT(u[9], 0.4 * u[8]);
     EXPECT_LT(u[8], 100 / springs.stretch);
@@ -124,12 +124,12 @@ TEST(Lateral, NeighboursSmoothAPushAtOneNode) {
 
 TEST(Lateral, AnEndBeyondThePushIsNoThickerThanTheHairBeforeIt) {
     // Its height is r²/a with a = r + u, for a tuft pressed up to 5 mm from its point.
-    const std::vector<double> at = nodes(32);
-    const std::vector<double> r = pointed(at);
+    const Recycled<double> at = nodes(32);
+    const Recycled<double> r = pointed(at);
     LateralSide side = pushed(at, 0);
     for (std::size_t i = 8; at[i] < 0.027; ++i) side.push[i] = 1e4 * 1.8 * r[i];
     const LateralSprings springs{1e4, 1e4, 2.1e-3, 100, r};
-    const std::vector<double> u = solve_lateral(at, springs, side);
+    const Recycled<double> u = solve_lateral(at, springs, side);
     for (std::size_t i = 20; i < u.size(); ++i) {
         EXPECT_GT(u[i], -0.05 * r[i]) << i;
         EXPECT_LT(r[i] * r[i] / (r[i] + u[i]), r[i - 1] * r[i - 1] / (r[i - 1] + u[i - 1]) + 1e-5) << i;
@@ -137,11 +137,11 @@ TEST(Lateral, AnEndBeyondThePushIsNoThickerThanTheHairBeforeIt) {
 }
 
 TEST(Lateral, AWallHoldsTheSideThatMeetsIt) {
-    const std::vector<double> at = nodes(16);
+    const Recycled<double> at = nodes(16);
     const LateralSprings springs{2e4, 2e4, 2e-3, 100, {}};
     LateralSide open = pushed(at, 40), walled = open;
     for (std::size_t i = 6; i < 10; ++i) walled.clear[i] = 5e-4;
-    const std::vector<double> u = solve_lateral(at, springs, open), v = solve_lateral(at, springs, walled);
+    const Recycled<double> u = solve_lateral(at, springs, open), v = solve_lateral(at, springs, walled);
     for (std::size_t i = 6; i < 10; ++i) {
         EXPECT_GT(u[i], 1.5e-3);
         EXPECT_LT(v[i], 5.5e-4);  // gives by the push over 100 times the springs
@@ -149,13 +149,13 @@ TEST(Lateral, AWallHoldsTheSideThatMeetsIt) {
     EXPECT_GT(v[14], 0.8 * u[14]);
 }
 
-double tributary(const std::vector<double>& at, std::size_t i) {
+double tributary(const Recycled<double>& at, std::size_t i) {
     return 0.5 * (at[std::min(i + 1, at.size() - 1)] - at[i > 0 ? i - 1 : 0]);
 }
 
 TEST(Lateral, WhatTheSpringsStoreIsTheWorkOfThePushLessE) {
     Random random(11);
-    const std::vector<double> at = nodes(16);
+    const Recycled<double> at = nodes(16);
     const LateralSprings springs{2e4, 1.5e4, 2.5e-3, 100, pointed(at)};
     for (int trial = 0; trial < 10; ++trial) {
         LateralSide side = pushed(at, 0);
@@ -163,7 +163,7 @@ TEST(Lateral, WhatTheSpringsStoreIsTheWorkOfThePushLessE) {
         if (trial > 4) {
             for (std::size_t i = 5; i < 9; ++i) side.clear[i] = random.uniform(-1e-4, 4e-4);
         }
-        const std::vector<double> u = solve_lateral(at, springs, side);
+        const Recycled<double> u = solve_lateral(at, springs, side);
         double work = 0;
         for (std::size_t i = 1; i < u.size(); ++i) work += tributary(at, i) * side.push[i] * u[i];
         const double stored = lateral_energy(at, springs, side, u).value + work;
@@ -173,8 +173,8 @@ TEST(Lateral, WhatTheSpringsStoreIsTheWorkOfThePushLessE) {
 }
 
 /// S(δ) + Σ w T |δ - d|.
-double dragged(const std::vector<double>& at, const LateralSprings& springs, const LateralFriction& f,
-               const std::vector<double>& shift) {
+double dragged(const Recycled<double>& at, const LateralSprings& springs, const LateralFriction& f,
+               const Recycled<double>& shift) {
     double sum = 2 * lateral_energy(at, springs, pushed(at, 0), shift).value;
     for (std::size_t i = 1; i < shift.size(); ++i)
         sum += tributary(at, i) * f.most[i] * std::abs(shift[i] - f.stuck[i]);
@@ -183,11 +183,11 @@ double dragged(const std::vector<double>& at, const LateralSprings& springs, con
 
 TEST(Lateral, DraggedNodesStickOrSlipWithTheLeastOfStoredAndLost) {
     Random random(13);
-    const std::vector<double> at = nodes(16);
+    const Recycled<double> at = nodes(16);
     const LateralSprings springs{400, 400, 1.4e-3, 100, pointed(at)};
     int sticking = 0, slipping = 0;
     for (int trial = 0; trial < 40; ++trial) {
-        LateralFriction f{std::vector<double>(at.size(), 0), std::vector<double>(at.size(), 0)};
+        LateralFriction f{Recycled<double>(at.size(), 0), Recycled<double>(at.size(), 0)};
         for (std::size_t i = 6; i < at.size(); ++i) {
             f.most[i] = random.uniform(0, 0.1);
             f.stuck[i] = random.uniform(-1e-4, 2e-4);
@@ -198,7 +198,7 @@ TEST(Lateral, DraggedNodesStickOrSlipWithTheLeastOfStoredAndLost) {
         for (std::size_t i = 6; i < at.size(); ++i)
             (std::abs(out.shift[i] - f.stuck[i]) < 1e-9 ? sticking : slipping)++;
         for (int other = 0; other < 20; ++other) {
-            std::vector<double> v = out.shift;
+            Recycled<double> v = out.shift;
             for (std::size_t i = 1; i < v.size(); ++i) v[i] += random.uniform(-1, 1) * std::pow(10.0, -5 - other % 3);
             // HolderPose nodes are held by springs 1e8 times as stiff.
             EXPECT_GT(dragged(at, springs, f, v), least * (1 - 1e-7)) << trial;
@@ -209,9 +209,9 @@ TEST(Lateral, DraggedNodesStickOrSlipWithTheLeastOfStoredAndLost) {
 }
 
 TEST(Lateral, ADragShiftsTheSidesUntilTheirSpringsPullAsFrictionDoesAndLosesTheRest) {
-    const std::vector<double> at = nodes(16);
+    const Recycled<double> at = nodes(16);
     const LateralSprings springs{400, 400, 1.4e-3, 100, pointed(at)};
-    LateralFriction f{std::vector<double>(at.size(), 0), std::vector<double>(at.size(), 0)};
+    LateralFriction f{Recycled<double>(at.size(), 0), Recycled<double>(at.size(), 0)};
     for (std::size_t i = 6; i < at.size(); ++i) f.most[i] = 0.05;
     LateralShift now;
     now.shift.assign(at.size(), 0);
@@ -234,7 +234,7 @@ TEST(Lateral, ADragShiftsTheSidesUntilTheirSpringsPullAsFrictionDoesAndLosesTheR
     for (int k = 0; k < 500; ++k) slide(-2e-6);
     LateralSide side = pushed(at, 0);
     for (std::size_t i = 6; i < at.size(); ++i) side.push[i] = 0.025;  // each side's half
-    const std::vector<double> whole = solve_lateral(at, springs, side);
+    const Recycled<double> whole = solve_lateral(at, springs, side);
     for (std::size_t i = 6; i < at.size(); ++i) EXPECT_NEAR(now.shift[i], whole[i], 1e-9);  // slips everywhere
     for (int k = 0; k < 500; ++k) slide(2e-6);
     for (std::size_t i = 6; i < at.size(); ++i) EXPECT_NEAR(now.shift[i], -whole[i], 1e-9);

@@ -253,7 +253,7 @@ TEST(MacroModel, HeldHairComesToRest) {
         const ContactPlane plane;
         const SpineModelInput held{papers::pose_at(stroke, p, stroke.press + stroke.drag), {&plane, 1}, 0.01, wetness};
         for (int i = 0; i < 200; ++i) model->step(held);
-        const std::vector<Vec3> before = model->nodes();
+        const Recycled<Vec3> before = model->nodes();
         for (int i = 0; i < 100; ++i) model->step(held);
         // 2 s are fifty times that of the recovery; what is left is where the solvers stop.
         for (std::size_t i = 0; i < before.size(); ++i)

@@ -37,7 +37,7 @@ TEST_P(MacroAndTruss, AMirrorImageOfTheHandBendsTheMirrorImage) {
             const TuftState a = draw(*one, p, stroke);
             stroke.mirrored = true;
             const TuftState b = draw(*other, p, stroke);
-            const std::vector<Vec3> there = other->nodes();
+            const Recycled<Vec3> there = other->nodes();
             // 70 steps of rounding, and thresholds that they move.
             for (std::size_t i = 0; i < there.size(); ++i)
                 EXPECT_LT(glm::length(mirrored(one->nodes()[i]) - there[i]), 1e-6 * p.length);
@@ -80,7 +80,7 @@ TEST_P(MacroAndTruss, InTheAirTheHairIsStraightAndTouchesNothing) {
     for (const std::span<const ContactPlane> planes : {std::span<const ContactPlane>{}, std::span(&far, 1)}) {
         const TuftState state = model->step({pose, planes, 0.01, 1});
         EXPECT_EQ(state.normal_force, 0);
-        const std::vector<Vec3> nodes = model->nodes();
+        const Recycled<Vec3> nodes = model->nodes();
         ASSERT_EQ(static_cast<int>(nodes.size()), p.segments + 1);
         for (const Vec3& x : nodes) EXPECT_LT(glm::length(glm::cross(x - pose.position, pose.axis())), 1e-12);
         EXPECT_LT(glm::length(nodes.front() - pose.position - p.length * pose.axis()), 1e-12);
@@ -130,7 +130,7 @@ TEST_P(MacroAndTruss, EachNodeKeepsOffItsOwnPlane) {
     // A round bar of 20 mm radius along y under the hair.
     for (int i = 0; i < 60; ++i) {
         const Pose pose{{2e-4 * i, 0, 0.03 - 2e-4 * i}, {1, 0, 0, 0}};
-        std::vector<ContactPlane> planes;
+        Recycled<ContactPlane> planes;
         for (const Vec3& x : model->nodes()) {
             const Vec3 n = glm::normalize(Vec3{x.x, 0, x.z + 0.02});
             planes.push_back({0.02 * n - Vec3{0, 0, 0.02}, n});

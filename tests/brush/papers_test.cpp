@@ -13,7 +13,7 @@ namespace {
 
 struct Painted {
     std::vector<Vec3> nodes;  ///< of all steps
-    std::vector<Section> sections;
+    Recycled<Section> sections;
     Vec3 force{0};
 };
 
@@ -31,7 +31,7 @@ Painted paint(Tuft tuft, double mirror, int steps = 120) {
                         lean,
                         0.01 * i};
         const TuftState state = step(tuft, pose, {&sheet, 1}, 0.01);
-        const std::vector<Vec3> nodes = predicted_nodes(tuft, pose);
+        const Recycled<Vec3> nodes = predicted_nodes(tuft, pose);
         out.nodes.insert(out.nodes.end(), nodes.begin(), nodes.end());
         for (const Branch& b : state.branches)
             out.sections.insert(out.sections.end(), b.sections.begin(), b.sections.end());
@@ -94,7 +94,7 @@ TEST_P(Papers, GoWithTheHandOverARotatedSheet) {
         const Pose other{turn * pose.position + shift, turn * pose.rotation, pose.time};
         step(here, pose, {&sheet, 1}, 0.01);
         step(there, other, {&turned, 1}, 0.01);
-        const std::vector<Vec3> a = predicted_nodes(here, pose), b = predicted_nodes(there, other);
+        const Recycled<Vec3> a = predicted_nodes(here, pose), b = predicted_nodes(there, other);
         for (std::size_t k = 0; k < a.size(); ++k)
             ASSERT_LT(glm::length(turn * a[k] + shift - b[k]), 1e-5 * length) << i;  // solvers stop at 1e-7
     }
@@ -156,7 +156,7 @@ TEST_P(Papers, ReshapeStraightensTheHairAtItsPlace) {
         step(tuft, pose, {&sheet, 1}, 0.01);
     }
     reshape(tuft);
-    const std::vector<Vec3> x = predicted_nodes(tuft, pose);
+    const Recycled<Vec3> x = predicted_nodes(tuft, pose);
     for (const Vec3& p : x) EXPECT_LT(glm::length(Vec2(p - pose.position)), 1e-12);
     EXPECT_NEAR(x.front().z, pose.position.z - length, 1e-12);
 }

@@ -62,7 +62,7 @@ struct Scene {
     Rod rod;
     Memory memory;
     Law law;
-    std::vector<Obstacle> plane;
+    Recycled<Obstacle> plane;
 };
 
 enum class Under { plane, edge, corner, rim };
@@ -161,7 +161,7 @@ TEST(RodLaws, GradientMatchesFiniteDifferences) {
         ASSERT_TRUE(under == Under::corner || under == Under::rim || s.memory.joint[2].yielded);
         const Load load{{0.01, -0.02, 0.03}, 0, {}};
         const std::size_t size = 16;
-        std::vector<double> x(size, 0.0);
+        Recycled<double> x(size, 0.0);
         const Probe at = probe_energy(s.rod, s.memory, {.obstacles = s.plane, .law = s.law, .load = load}, x);
         double largest = 0;
         for (const double g : at.gradient) largest = std::max(largest, std::abs(g));
@@ -192,10 +192,10 @@ TEST(RodLaws, GradientMatchesAtRandomShapesToo) {
             t = glm::normalize(t + 0.3 * Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
         }
         s.memory.node = nodes(s.rod, s.memory);
-        std::vector<double> x(16, 0.0);
+        Recycled<double> x(16, 0.0);
         const Probe at = probe_energy(s.rod, s.memory, {.obstacles = s.plane, .law = s.law}, x);
         // One random direction sums all components.
-        std::vector<double> d(16);
+        Recycled<double> d(16);
         double slope = 0, scale = 0;
         for (std::size_t i = 0; i < 16; ++i) {
             d[i] = random.uniform(-1, 1);
@@ -214,11 +214,11 @@ TEST(RodLaws, GradientMatchesAtRandomShapesToo) {
 TEST(RodLaws, PointsOverOnePlaneAddUpAsEachByItself) {
     // Planes that differ by round-off are met point by point, equal ones by the segment.
     const Scene s = rough_scene(false);
-    std::vector<Obstacle> apart = s.plane;
+    Recycled<Obstacle> apart = s.plane;
     for (int i = 0; i <= 8; ++i) apart[i].normal = glm::normalize(apart[i].normal + Vec3{1e-12 * (i % 2), 0, 0});
     Random random(11);
     for (int trial = 0; trial < 20; ++trial) {
-        std::vector<double> x(16);
+        Recycled<double> x(16);
         for (double& u : x) u = random.uniform(-0.2, 0.2);
         const Probe one = probe_energy(s.rod, s.memory, {.obstacles = s.plane, .law = s.law}, x);
         const Probe other = probe_energy(s.rod, s.memory, {.obstacles = apart, .law = s.law}, x);
@@ -239,7 +239,7 @@ TEST(RodLaws, EliminationAlongTheRodSolvesTheFullMatrix) {
     int solved = 0;
     for (int trial = 0; trial < 50; ++trial) {
         const Scene& s = scenes[trial % 5];
-        std::vector<double> x(kSize);
+        Recycled<double> x(kSize);
         for (double& u : x) u = trial < 5 ? 0 : random.uniform(-0.2, 0.2);
         const double damping = trial % 2 == 0 ? 0 : 3;
         const Probe at = probe_energy(s.rod, s.memory, {.obstacles = s.plane, .law = s.law}, x, damping);
@@ -275,7 +275,7 @@ TEST(RodLaws, ThePotentialNeverRisesFromStepToStep) {
         for (Vec3& t : start.tangent)
             t = glm::normalize(t + 0.3 * Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
         start.node = nodes(rod, start);
-        std::vector<Obstacle> planes(17, {{0, 0, 0}, {0, 0, 1}, 0.06});
+        Recycled<Obstacle> planes(17, {{0, 0, 0}, {0, 0, 1}, 0.06});
         Law law;
         law.points_per_segment = 6;
         law.stiffness = 60;
@@ -289,7 +289,7 @@ TEST(RodLaws, ThePotentialNeverRisesFromStepToStep) {
             const Vec3 left = glm::normalize(Vec3{-0.5, 0, 1}), right = glm::normalize(Vec3{0.5, 0, 1});
             for (std::size_t i = 0; i < planes.size(); ++i) planes[i].normal = start.node[i].x < 0 ? left : right;
         }
-        const std::vector<double> still(2 * 16, 0.0);
+        const Recycled<double> still(2 * 16, 0.0);
         double before = probe_energy(rod, start, {.obstacles = planes, .law = law}, still).value;
         const double first = before;
         for (int k = 1; k <= 60; ++k) {
@@ -319,7 +319,7 @@ TEST(RodLaws, EndsThatMeetTheSurfaceEndOnHaveTheirCompliance) {
     law.end_compliance = give;
     law.friction = 0;
     law.max_iterations = 200;
-    const std::vector<Obstacle> plane(17);
+    const Recycled<Obstacle> plane(17);
     double before = 0;
     for (int i = 1; i <= 10; ++i) {
         const double s = 0.1 * i * give;
@@ -384,14 +384,14 @@ TEST(RodLaws, RootCarriesWhatTheContactsGiveAndFrictionStaysInItsCone) {
     law.tolerance = 1e-8;
     law.pass_tolerance = 1e-3;
     law.max_iterations = 2000;
-    std::vector<Obstacle> plane(17);
+    Recycled<Obstacle> plane(17);
     for (int i = 0; i <= 16; ++i) plane[i].radius = 0.09 * (1 - i / 16.2);
     Clamp clamp{{0, 0, 0.98}, glm::normalize(Vec3{0.1, 0, -1}), {0, 1, 0}};
     Memory memory = make_memory(rod, clamp);
     for (int i = 0; i < 200; ++i) {
         const Vec3 v = i < 50 ? Vec3{0.002, 0, -0.006} : Vec3{0.01 * std::cos(0.02 * i), 0.01 * std::sin(0.02 * i), 0};
         clamp.position += v;
-        const std::vector<Vec3> before = memory.node;
+        const Recycled<Vec3> before = memory.node;
         const Result r = solve(rod, memory, clamp, {.obstacles = plane, .law = law});
         ASSERT_TRUE(r.converged) << i;
         // The clamp joint's moment balances all contact forces about the root.
@@ -426,7 +426,7 @@ TEST(RodLaws, WorkOfTheHandEqualsStoredPlusLostEnergy) {
     law.tolerance = 1e-9;
     law.max_iterations = 300;
     law.max_passes = 40;
-    std::vector<Obstacle> plane(17);
+    Recycled<Obstacle> plane(17);
     for (int i = 0; i <= 16; ++i) plane[i].radius = 0.09 * (1 - i / 16.2);
     // With all that takes energy on the way: ends that give, damped joints, a set that recovers.
     law.end_compliance = 0.016;
@@ -497,12 +497,12 @@ TEST(RodLaws, ElasticFrictionlessCycleReturnsExactly) {
     law.core_stiffness = 3000;
     law.tolerance = 1e-11;
     law.max_iterations = 2000;
-    std::vector<Obstacle> plane(17);
+    Recycled<Obstacle> plane(17);
     for (int i = 0; i <= 16; ++i) plane[i].radius = 0.09 * (1 - i / 16.2);
     Clamp clamp{{0, 0, 0.8}, glm::normalize(Vec3{0.3, 0, -1}), {0, 1, 0}};
     Memory memory = make_memory(rod, clamp);
     solve(rod, memory, clamp, {.obstacles = plane, .law = law});
-    const std::vector<Vec3> start = memory.node;
+    const Recycled<Vec3> start = memory.node;
     for (int i = 1; i <= 40; ++i) {
         Clamp c = clamp;
         const double a = 2 * 3.14159265358979 * i / 40;

@@ -75,8 +75,8 @@ TEST(TuftSurface, RestVolumeIsTheSolidOfRevolution) {
 
 TEST(TuftSurface, RefinedSectionsPassThroughTheGivenOnesAndStayPositive) {
     const TuftState state = bent(true);
-    const std::vector<Section>& in = state.branches[0].sections;
-    const std::vector<Section> fine = refine_sections(in, 4);
+    const Recycled<Section>& in = state.branches[0].sections;
+    const Recycled<Section> fine = refine_sections(in, 4);
     ASSERT_EQ(fine.size(), in.size() + 4 * (in.size() - 1));
     for (std::size_t i = 0; i < in.size(); ++i) EXPECT_EQ(fine[5 * i].centre, in[i].centre);
     for (const Section& s : fine) {

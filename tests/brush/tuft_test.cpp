@@ -58,11 +58,11 @@ TEST(Tuft, SegmentsKeepTheirLengthAndSectionsTheirArea) {
     preset.tip_drop = 0;  // ink, not hair
     Tuft tuft = make_tuft(preset);
     const TuftState state = draw(tuft, {});
-    const std::vector<Vec3>& x = tuft.trunk().memory.node;
+    const Recycled<Vec3>& x = tuft.trunk().memory.node;
     for (int j = 0; j < tuft.trunk().rod.segments(); ++j) {
         EXPECT_NEAR(glm::length(x[j + 1] - x[j]), tuft.trunk().rod.length[j], 1e-12);
     }
-    const std::vector<Section>& sections = state.branches.front().sections;
+    const Recycled<Section>& sections = state.branches.front().sections;
     ASSERT_EQ(sections.size(), x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
         const double r = tuft.trunk().rest_radius[x.size() - 1 - i];
@@ -257,7 +257,7 @@ struct PressedDown {
     /// Length of hair that lies on the sheet, in lengths; of a segment the part whose side is under it.
     double contact() const {
         double sum = 0;
-        const std::vector<Section>& s = state.branches[0].sections;
+        const Recycled<Section>& s = state.branches[0].sections;
         for (std::size_t i = 0; i + 1 < s.size(); ++i) {
             const double from = s[i].centre.z - s[i].b, to = s[i + 1].centre.z - s[i + 1].b;
             const double low = std::min(from, to), high = std::max(from, to);
@@ -423,7 +423,7 @@ TEST(Tuft, SectionsMoveNoFasterThanTheHandThatPresses) {
 TEST(Tuft, OnePlanePerNodeOfTheSamePlaneIsOnePlane) {
     Tuft a = make_tuft(load_preset("mixed-medium")), b = a;
     const ContactPlane plane;
-    const std::vector<ContactPlane> planes(17, plane);
+    const Recycled<ContactPlane> planes(17, plane);
     for (int i = 1; i <= 100; ++i) {
         const Pose pose{{2e-4 * i, 0, 0.032 - 7e-5 * i}, {1, 0, 0, 0}, 0.01 * i};
         const TuftState sa = step(a, pose, {&plane, 1}, 0.01), sb = step(b, pose, planes, 0.01);
@@ -497,7 +497,7 @@ TEST(Tuft, TenThousandRandomPosesStayFiniteAndBounded) {
                 glm::angleAxis(random.uniform(0, i % 2 == 0 ? 3.14 : 0.5), glm::normalize(axis + Vec3{1e-9, 0, 0}));
             ContactPlane plane;
             plane.normal = glm::normalize(Vec3{random.uniform(-1, 1), random.uniform(-1, 1), 1.2});
-            std::vector<ContactPlane> planes(predicted_nodes(tuft, pose).size(), plane);
+            Recycled<ContactPlane> planes(predicted_nodes(tuft, pose).size(), plane);
             for (ContactPlane& p : planes) p.origin.z += 1e-3 * random.uniform();
             const TuftState state = step(tuft, pose, planes, 0.01);
             ASSERT_TRUE(std::isfinite(state.normal_force) && std::isfinite(glm::length(state.force)));

@@ -117,7 +117,7 @@ TEST(Ferrule, RingHasOneSpineInTheMiddle) {
         // Less than that of the whole disc, R²/2, by what the hair of each cell has about its own spine.
         EXPECT_LT(moment, 0.5 * p.radius * p.radius);
         EXPECT_GT(moment, 0.3 * p.radius * p.radius);
-        std::vector<int> neighbours(spines.size());
+        Recycled<int> neighbours(spines.size());
         for (const FerruleNeighbours& n : ferrule_neighbours(p)) {
             ++neighbours[n.first];
             ++neighbours[n.second];
@@ -135,7 +135,7 @@ TEST(Ferrule, RingHasOneSpineInTheMiddle) {
 TEST(Ferrule, RingSharesItsHairEvenly) {
     const Tuft tuft = make_tuft(load_preset("stippler-10"), 3);
     constexpr int kPlaces = 60000;
-    std::vector<double> count(tuft.spines.size()), inner(tuft.spines.size());
+    Recycled<double> count(tuft.spines.size()), inner(tuft.spines.size());
     for (int i = 0; i < kPlaces; ++i) {
         const double r = std::sqrt((i + 0.5) / kPlaces), w = 2.399963 * i;  // the golden angle
         const BranchPlace at = in_branch(tuft.bundles, r * Vec2{std::cos(w), std::sin(w)}, 7);
@@ -170,8 +170,8 @@ TEST(WideTuft, BentSectionsKeepTheirArea) {
         Tuft tuft = make_tuft(load_preset(name), 1);
         const TuftState state = dragged(tuft, {.depth = 0.25, .lean = 0.4});
         for (std::size_t k = 0; k < tuft.spines.size(); ++k) {
-            const std::vector<double>& rest = tuft.spines[k].rest_radius;
-            const std::vector<Section>& bent = state.branches[k].sections;
+            const Recycled<double>& rest = tuft.spines[k].rest_radius;
+            const Recycled<Section>& bent = state.branches[k].sections;
             for (std::size_t i = 0; i < rest.size(); ++i)
                 EXPECT_NEAR(bent[bent.size() - 1 - i].a * bent[bent.size() - 1 - i].b, rest[i] * rest[i],
                             1e-12 * rest[i] * rest[i])
@@ -186,9 +186,9 @@ TEST(WideTuft, HangsAsItWasSetIn) {
         for (const double wet : {0.0, 1.0}) {
             Tuft tuft = make_tuft(load_preset(name), 1);
             tuft.wetness = wet;
-            const std::vector<Vec3> before = predicted_nodes(tuft, {});
+            const Recycled<Vec3> before = predicted_nodes(tuft, {});
             for (int i = 0; i < 3; ++i) step(tuft, {}, {}, 1e-2);
-            const std::vector<Vec3> after = predicted_nodes(tuft, {});
+            const Recycled<Vec3> after = predicted_nodes(tuft, {});
             // The residual moment, 1e-6 of B0/L, over the softest tip, 1e-3 of B0.
             for (std::size_t i = 0; i < before.size(); ++i)
                 EXPECT_LT(glm::distance(before[i], after[i]), 1e-3 * tuft.preset.length) << name << " wet " << wet;
@@ -240,7 +240,7 @@ TEST(WideTuft, FlatDrawsItsWidthAndOnItsEdgeItsThickness) {
 
 /// The force of a row does not depend on the number of spines that stand for it.
 TEST(WideTuft, RefinedRowsConverge) {
-    std::vector<double> force, width;
+    Recycled<double> force, width;
     for (const int count : {3, 5, 9}) {
         Preset p = load_preset("flat-12");
         p.spines = count;

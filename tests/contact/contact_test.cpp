@@ -41,7 +41,7 @@ bool finite(const Vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-const std::vector<brush::Section>& spine(const Result& r) {
+const Recycled<brush::Section>& spine(const Result& r) {
     return r.tuft.branches.front().sections;
 }
 

@@ -10,7 +10,7 @@
 namespace tuft::footprint {
 namespace {
 
-std::vector<std::uint8_t> drawn(int width, int height, bool by_columns, bool turned) {
+Recycled<std::uint8_t> drawn(int width, int height, bool by_columns, bool turned) {
     Bands bands(width, height, by_columns);
     const auto place = [&](double x, double y) { return turned ? Vec2{y, x} : Vec2{x, y}; };
     // Shallow ones that taper, lean and begin within cells; one that leaves the picture.
@@ -18,7 +18,7 @@ std::vector<std::uint8_t> drawn(int width, int height, bool by_columns, bool tur
     bands.draw(place(50, 9.5), place(5.25, 6.5), 0.3, 1.7, place(-0.6, 0.8));
     bands.draw(place(30.5, 2.5), place(90, -5), 1.5, 1.5, place(0, 1));
     bands.draw(place(30.5, 33), place(57, 41), 3, 3, place(0, 1));
-    std::vector<std::uint8_t> level;
+    Recycled<std::uint8_t> level;
     bands.copy_rows(level);
     return level;
 }
@@ -29,7 +29,7 @@ TEST(Bands, AreTheSameHoweverThePictureIsKept) {
 }
 
 TEST(Bands, TurnWithThePicture) {
-    std::vector<std::uint8_t> turned;
+    Recycled<std::uint8_t> turned;
     transpose(drawn(57, 41, false, false), 57, 41, turned);
     EXPECT_EQ(turned, drawn(41, 57, false, true));
 }
@@ -37,7 +37,7 @@ TEST(Bands, TurnWithThePicture) {
 TEST(Bands, CoverTheirArea) {
     Bands bands(64, 32, false);
     bands.draw({4.5, 10}, {54.5, 16}, 2, 4, {0, 1});
-    std::vector<std::uint8_t> level;
+    Recycled<std::uint8_t> level;
     bands.copy_rows(level);
     const double sum = std::accumulate(level.begin(), level.end(), 0.0) / 255;
     // 50 cells of a mean width of 6; half a level of rounding in each of the border's cells, some
@@ -48,7 +48,7 @@ TEST(Bands, CoverTheirArea) {
 TEST(Pictures, TurnedTwiceAreThemselves) {
     for (const int width : {1, 7, 8, 23, 64})
         for (const int height : {1, 8, 9, 40}) {
-            std::vector<std::uint8_t> cells(static_cast<std::size_t>(width) * height), once, twice;
+            Recycled<std::uint8_t> cells(static_cast<std::size_t>(width) * height), once, twice;
             for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = static_cast<std::uint8_t>(37 * i + i / 256);
             transpose(cells, width, height, once);
             for (int y = 0; y < height; ++y)

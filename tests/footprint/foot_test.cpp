@@ -17,25 +17,25 @@ namespace {
 constexpr double kBin = 5e-5, kFirst = -4e-3;  // m along x
 
 /// Half widths of what a tuft covers that is pressed straight down on z = 0 and lifted again, by bins along x.
-std::vector<double> pressed(const std::string& brush, double depth, int ms) {
+Recycled<double> pressed(const std::string& brush, double depth, int ms) {
     brush::Tuft tuft = brush::make_tuft(brush::load_preset(brush));
     const double length = tuft.preset.length, film = OutlineOptions{}.film;
     const brush::ContactPlane sheet;
     Frame frame = make_frame({0, 0, 0}, {0, 0, 1});
     frame.t = {1, 0, 0};
     frame.b = {0, 1, 0};
-    std::vector<double> half(600, 0);
+    Recycled<double> half(600, 0);
     for (int i = -20; i <= ms + 20; ++i) {
         const double down = std::sin(std::numbers::pi * std::clamp(double(i) / ms, 0.0, 1.0));
         const double air = i < 0 || i > ms ? 5e-4 : 0;
         brush::Pose pose{.position = {0, 0, length - depth * length * down + air}, .time = 1e-3 * i};
         const brush::TuftState state = step(tuft, pose, {&sheet, 1}, 1e-3);
-        std::vector<Trail> found = find_trails(state, frame, {}, length, film);
+        Recycled<Trail> found = find_trails(state, frame, {}, length, film);
         cover_upright_hair(found, upright_hair_of(tuft, sheet), frame, film);
         for (const Trail& trail : found) {
             const Outline o = outline_of(trail, OutlineOptions{}.points);
             if (o.left.size() < 3) continue;
-            const std::vector<Vec2> curve = curve_points(o, 16);
+            const Recycled<Vec2> curve = curve_points(o, 16);
             for (std::size_t k = 0; k < curve.size(); ++k) {
                 const Vec2 &p = curve[k], &q = curve[(k + 1) % curve.size()];
                 for (int s = 0; s <= 8; ++s) {
@@ -54,7 +54,7 @@ TEST(UprightHair, APressStraightDownLeavesADropRoundAtTheAxisWithoutASpur) {
         for (const double depth : {0.08, 0.16}) {
             for (const int ms : {80, 400}) {
                 SCOPED_TRACE(std::string(brush) + " " + std::to_string(depth) + " in " + std::to_string(ms) + " ms");
-                const std::vector<double> half = pressed(brush, depth, ms);
+                const Recycled<double> half = pressed(brush, depth, ms);
                 const auto touched = [](double h) { return h > 0; };
                 const auto rear =
                     static_cast<std::size_t>(std::find_if(half.begin(), half.end(), touched) - half.begin());

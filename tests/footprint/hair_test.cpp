@@ -19,8 +19,8 @@ const PicturePlane kPlane{kFlat, 0, kCell};
 struct Pressed {
     brush::Tuft tuft;
     brush::TuftState state;
-    std::vector<Trail> trails;
-    std::vector<Outline> outlines;
+    Recycled<Trail> trails;
+    Recycled<Outline> outlines;
 };
 
 /// A full tuft dragged along x until it lies steadily.
@@ -50,7 +50,7 @@ double area_of(const Footprint& f) {
 
 Footprint marks(const brush::Bundles& bundles, double wet, double travel = 0) {
     const Pressed& p = pressed();
-    const std::vector<double> all(bundles.place.size(), wet);
+    const Recycled<double> all(bundles.place.size(), wet);
     return draw_hair_marks({p.trails, p.outlines, bundles}, {all, travel}, kPlane).footprint;
 }
 
@@ -100,16 +100,16 @@ TEST(Hair, SplayedHairGivesInkFromItsWholeLowerHalf) {
     // A splayed tip is as wide as the belly, but for round-off, and has no height: which bristles are
     // the lower ones must not hang on which of them is taken, or on a touch of lean.
     const Pressed& p = pressed();
-    const std::vector<double> wet(p.tuft.bundles.place.size(), 0.5);
+    const Recycled<double> wet(p.tuft.bundles.place.size(), 0.5);
     // Drawn on for the length of the patch, the tip has the width of the belly.
     const double length = p.tuft.preset.length, patch = (p.trails[0].along.front() - p.trails[0].along.back()) * length;
     HairTracks tracks;
     for (double slid = 0; slid < patch + 1e-3; slid += 1e-4) {
-        std::vector<Trail> now = p.trails;
+        Recycled<Trail> now = p.trails;
         spread_trails(now, tracks, {slid, length});
     }
     const auto area = [&](double lean, double more) {
-        std::vector<Trail> leaning = p.trails;
+        Recycled<Trail> leaning = p.trails;
         HairTracks own = tracks;
         spread_trails(leaning, own, {patch + 1e-3, length});
         for (std::size_t i = 0; i < leaning[0].cuts.size(); ++i) {
@@ -117,7 +117,7 @@ TEST(Hair, SplayedHairGivesInkFromItsWholeLowerHalf) {
             cut.e.z += lean;
             if (i < 4) cut.a *= 1 + more;
         }
-        std::vector<Outline> outlines{outline_of(leaning[0], 20)};
+        Recycled<Outline> outlines{outline_of(leaning[0], 20)};
         return area_of(draw_hair_marks({leaning, outlines, p.tuft.bundles}, {wet, 0}, kPlane).footprint);
     };
     const double straight = area(0, 0);
@@ -212,7 +212,7 @@ TEST(Hair, DriesIntoThreadsOfItsOwnWidth) {
 TEST(Hair, DrawnSidewaysHasInkForNoWiderAPath) {
     // The tuft lies along x: drawn along y its bristles would paint with their whole length.
     const Pressed& p = pressed();
-    const std::vector<double> wet(p.tuft.bundles.place.size(), 0.5);
+    const Recycled<double> wet(p.tuft.bundles.place.size(), 0.5);
     const auto area = [&](const Vec2& direction) {
         return area_of(draw_hair_marks({p.trails, p.outlines, p.tuft.bundles}, {wet, 0, direction}, kPlane).footprint);
     };
@@ -225,9 +225,9 @@ TEST(Hair, MovingSidewaysByItselfHasInkForNoWiderAPath) {
     // The hand stands; hair that goes aside, or spreads, or turns about a point, leaves no more than lying hair of its
     // width drawn that way, and hair that goes along itself leaves what a drag does.
     const Pressed& p = pressed();
-    const std::vector<double> wet(p.tuft.bundles.place.size(), 0.4);
+    const Recycled<double> wet(p.tuft.bundles.place.size(), 0.4);
     const auto area = [&](const std::function<void(Cut&)>& was) {
-        std::vector<Trail> before = p.trails;
+        Recycled<Trail> before = p.trails;
         for (Trail& trail : before)
             for (Cut& cut : trail.cuts) was(cut);
         return area_of(draw_hair_marks({p.trails, p.outlines, p.tuft.bundles}, {wet, 0, {}, before}, kPlane).footprint);
@@ -245,8 +245,8 @@ TEST(Hair, SweptAsideByAPressDrawsNoLine) {
     const Pressed& p = pressed();
     const auto area = [&](double wetness, double lands, const std::function<void(Cut&)>& was, double swings = 0,
                           const Vec2& direction = {1, 0}) {
-        const std::vector<double> wet(p.tuft.bundles.place.size(), wetness);
-        std::vector<Trail> before = p.trails;
+        const Recycled<double> wet(p.tuft.bundles.place.size(), wetness);
+        Recycled<Trail> before = p.trails;
         for (Trail& trail : before)
             for (Cut& cut : trail.cuts) was(cut);
         const HairInk ink{wet, 0, direction, before, lands, {1, 0}, swings};
@@ -267,7 +267,7 @@ TEST(Hair, SweptAsideByAPressDrawsNoLine) {
 }
 
 TEST(Hair, TransportedTrailsKeepTheirPositions) {
-    std::vector<Trail> trails = pressed().trails;
+    Recycled<Trail> trails = pressed().trails;
     Frame other;
     other.origin = {1e-3, -2e-3, 0};
     other.t = {0.6, 0.8, 0};
@@ -290,7 +290,7 @@ TEST(Hair, FollowsInItsTrack) {
     for (std::size_t i = widest; i-- > 0;)
         if (lying.cuts[i].a > lying.cuts[widest].a) widest = i;
     HairTracks tracks;
-    std::vector<Trail> now = p.trails;
+    Recycled<Trail> now = p.trails;
     spread_trails(now, tracks, {0, length});
     // A track has a place every 25 µm, over which the very tip grows from nothing.
     const auto near_tip = [&](std::size_t i) { return (lying.along[0] - lying.along[i]) * length < 5e-5; };
@@ -329,7 +329,7 @@ TEST(Hair, LeavesTheSurfaceWithTheLiftedTuft) {
     const Pressed& p = pressed();
     const double length = p.tuft.preset.length, drawn = length + 5e-3;
     HairTracks tracks;
-    std::vector<Trail> now;
+    Recycled<Trail> now;
     for (double slid = 0; slid <= drawn; slid += 1e-4) {
         now = p.trails;
         spread_trails(now, tracks, {slid, length});
@@ -361,7 +361,7 @@ TEST(Hair, ATrackIsAsWideWhateverTheSteps) {
     for (const double step : {1.9e-5, 4.9e-5, 1.3e-4}) {
         HairTracks tracks;
         for (double slid = 0; slid <= drawn; slid += step) {
-            std::vector<Trail> now = p.trails;
+            Recycled<Trail> now = p.trails;
             spread_trails(now, tracks, {slid, length});
             if (slid < length) continue;
             least = std::min(least, now[0].cuts[12].a);
@@ -379,7 +379,7 @@ TEST(Hair, EndsOfBristlesFollowTheirLengths) {
     one.bristles[0].place = {0, 0};
     one.bristles[0].readiness = 1;
     const Trail& trail = pressed().trails[0];
-    std::vector<double> ends;
+    Recycled<double> ends;
     for (double part = 0.2; part < 0.8; part += 0.01) {
         one.bristles[0].end =
             static_cast<float>(trail.along.back() + part * (trail.along.front() - trail.along.back()));
@@ -417,7 +417,7 @@ TEST(Hair, BristlesRollOffAndOnAsTheyAreDrawn) {
 TEST(Hair, TouchedCellsAreThoseOfTheLowerSideNearTheTip) {
     const Pressed& p = pressed();
     const brush::HairCells cells = brush::hair_cells(p.tuft.preset);
-    const std::vector<float> touched = contact_cells(p.trails, p.tuft.bundles, 1, cells.ends);
+    const Recycled<float> touched = contact_cells(p.trails, p.tuft.bundles, 1, cells.ends);
     ASSERT_EQ(touched.size(), p.tuft.bundles.place.size() * cells.ends.size());
     double sum = 0, root = 0;
     int bundles = 0;

@@ -37,7 +37,7 @@ brush::TuftState straight(const Vec3& tip, const Vec3& axis, double length, int 
     return tuft;
 }
 
-double area_of(const std::vector<Vec2>& polygon) {
+double area_of(const Recycled<Vec2>& polygon) {
     double sum = 0;
     for (std::size_t k = 0; k < polygon.size(); ++k) {
         const Vec2 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
@@ -238,7 +238,7 @@ TEST(Outline, FollowsNodePlanesRoundACylinder) {
         tuft.branches[0].sections.push_back(s);
         planes.push_back({R * n - Vec3{0, 0, R}, n});
     }
-    const std::vector<NodePlanes> by_branch = node_planes(tuft, planes);
+    const Recycled<NodePlanes> by_branch = node_planes(tuft, planes);
     ASSERT_EQ(by_branch.size(), 1u);
     EXPECT_EQ(node_planes(tuft, {planes.data(), 1}).at(0).size(), 17u);  // one serves all
     EXPECT_TRUE(node_planes(tuft, {planes.data(), 5}).empty());

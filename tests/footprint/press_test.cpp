@@ -18,9 +18,9 @@ constexpr int kBins = 1400;
 
 /// How far a stroke reaches to either side by place along it, metres; -1 where it is not.
 struct Edges {
-    std::vector<double> left = std::vector<double>(kBins, -1), right = left;
+    Recycled<double> left = Recycled<double>(kBins, -1), right = left;
 
-    void add(const std::vector<Vec2>& curve) {
+    void add(const Recycled<Vec2>& curve) {
         for (std::size_t k = 0; k < curve.size(); ++k) {
             const Vec2 &p = curve[k], &q = curve[(k + 1) % curve.size()];
             const int parts = 1 + static_cast<int>(glm::length(q - p) / (0.2 * kBin));
@@ -60,7 +60,7 @@ Edges quick_press(brush::Preset preset, int segments, double lean, double azimut
 
 /// What an edge wavers about that of the same press by four times as fine a rod: root mean square of the
 /// difference less its polynomial of degree 5, over the part of the stroke that widens; metres.
-double ripple(const std::vector<double>& edge, const std::vector<double>& fine) {
+double ripple(const Recycled<double>& edge, const Recycled<double>& fine) {
     const auto widest = std::max_element(fine.begin(), fine.end()) - fine.begin();
     std::ptrdiff_t first = 0;
     while (first < widest && (fine[first] == -1 || edge[first] == -1)) ++first;

@@ -72,7 +72,7 @@ TEST(SectionOutline, OfAConeIsItsCircle) {
     brush::Geometry g;
     add_tube(g, 96, 7, 0.03, [](double u) { return 6e-3 * (1 - 0.9 * u); });
     const Standing stand(g, 0.02);
-    const std::vector<Polygon> polygons = section_polygons(stand.carried, stand.shape, Frame{}, {.film = 0});
+    const Recycled<Polygon> polygons = section_polygons(stand.carried, stand.shape, Frame{}, {.film = 0});
     ASSERT_EQ(polygons.size(), 1u);
     const double r = 6e-3 * (1 - 0.9 * 2 / 3.0), area = 48 * std::sin(pi / 48) * r * r;
     // Coverage is in steps of 1/255 along the border.
@@ -89,7 +89,7 @@ TEST(SectionOutline, LeavesHolesAndSeveralParts) {
         add_tube(g, 96, 3, 0.03, outer);
         add_tube(g, 96, 3, 0.03, inner, turned);
         const Standing stand(g, 0.02);
-        const std::vector<Polygon> polygons = section_polygons(stand.carried, stand.shape, Frame{});
+        const Recycled<Polygon> polygons = section_polygons(stand.carried, stand.shape, Frame{});
         EXPECT_EQ(polygons.size(), 2u);
         EXPECT_NEAR(area_of(rasterise_polygons(polygons, Frame{}, 0, 5e-5)) / ring, 1, 2e-3);
     }
@@ -99,7 +99,7 @@ TEST(SectionOutline, LeavesHolesAndSeveralParts) {
     add_tube(g, 96, 3, 0.03, inner);
     for (std::size_t i = first; i < g.points.size(); ++i) g.points[i].x += 10;
     const Standing stand(g, 0.02);
-    const std::vector<Polygon> polygons = section_polygons(stand.carried, stand.shape, Frame{});
+    const Recycled<Polygon> polygons = section_polygons(stand.carried, stand.shape, Frame{});
     EXPECT_EQ(polygons.size(), 2u);
     EXPECT_NEAR(area_of(rasterise_polygons(polygons, Frame{}, 0, 5e-5)) / (96 * std::sin(pi / 48) * 9e-6), 1, 2e-3);
 }
@@ -110,12 +110,12 @@ TEST(SectionOutline, OfHairIsAStadiumForEachPartBelow) {
     g.lines = {{0, 1, 2}};
     const Standing stand(g, 0.02);
     const double half = 0.05e-3 + 0.1e-3;
-    const std::vector<Polygon> polygons = hair_polygons(stand.carried, stand.shape, Frame{}, 1e-4, {}, {.film = 1e-4});
+    const Recycled<Polygon> polygons = hair_polygons(stand.carried, stand.shape, Frame{}, 1e-4, {}, {.film = 1e-4});
     ASSERT_EQ(polygons.size(), 2u);  // the end of the upright part and the part that lies
     // Half discs of 12 sides at both ends.
     const double ends = 6 * std::sin(pi / 6) * half * half;
     EXPECT_NEAR(area_of(rasterise_polygons(polygons, Frame{}, 0, 2e-5)) / (20e-3 * half + ends), 1, 5e-3);
-    const std::vector<double> dry{0.0};
+    const Recycled<double> dry{0.0};
     EXPECT_TRUE(hair_polygons(stand.carried, stand.shape, Frame{}, 1e-4, {.wet = dry}).empty());
 }
 
@@ -138,7 +138,7 @@ Areas pressed(const std::string& name, double depth) {
         state = brush::step(tuft, pose, {&sheet, 1}, 0.01);
     }
     const double film = 1e-4;
-    const std::vector<Outline> outlines = outlines_of(state, Frame{}, {}, {.film = film});
+    const Recycled<Outline> outlines = outlines_of(state, Frame{}, {}, {.film = film});
     return {area_of(rasterise(outlines, Frame{}, 0, 5e-5)),
             area_of(rasterise_polygons(section_polygons(*tuft.carried, state.shape, Frame{}, {.film = film}), Frame{},
                                        0, 5e-5))};

@@ -41,11 +41,11 @@ double coverage_area(const Footprint& f) {
 
 /// For each column of the picture over the middle `part` of its width: where coverage begins and ends, metres.
 struct Rim {
-    std::vector<double> lo, hi;
+    Recycled<double> lo, hi;
     double width = 0;
 };
 Rim rim_of(const Footprint& f, double part) {
-    std::vector<std::pair<double, double>> all;
+    Recycled<std::pair<double, double>> all;
     for (int x = 0; x < f.width; ++x) {
         double lo = 1e9, hi = -1e9;
         for (int y = 0; y < f.height; ++y) {
@@ -71,7 +71,7 @@ struct Extent {
 };
 
 /// Of the outlines along x.
-Extent extent_of(const std::vector<Outline>& outlines) {
+Extent extent_of(const Recycled<Outline>& outlines) {
     Extent out;
     for (const Outline& o : outlines) {
         for (const Vec2& p : curve_points(o, 8)) {
@@ -82,7 +82,7 @@ Extent extent_of(const std::vector<Outline>& outlines) {
     return out;
 }
 
-double spread(const std::vector<double>& v) {
+double spread(const Recycled<double>& v) {
     const auto [lo, hi] = std::minmax_element(v.begin(), v.end());
     return *hi - *lo;
 }
@@ -91,7 +91,7 @@ double spread(const std::vector<double>& v) {
 /// stands out.
 TEST(WideOutline, FlatHasAStraightEdge) {
     const brush::TuftState tuft = dragged("flat-12");
-    const std::vector<Outline> outlines = outlines_of(tuft, kFlat);
+    const Recycled<Outline> outlines = outlines_of(tuft, kFlat);
     const Footprint f = rasterise(outlines, kFlat, 0, kCell);
     const Rim rim = rim_of(f, 0.7);
     EXPECT_NEAR(rim.width, 12e-3, 1.5e-3);
@@ -139,7 +139,7 @@ TEST(WideOutline, EdgeIsThatOfTheMouth) {
 
 /// Force and width of a row of 3, 5 and 9 spines, turned against its path, leaning and dragged.
 struct Refined {
-    std::vector<double> force, width;
+    Recycled<double> force, width;
 };
 Refined refined(const std::string& name, double wetness) {
     Refined out;
@@ -164,7 +164,7 @@ Refined refined(const std::string& name, double wetness) {
 }
 
 /// Order of convergence p of what 3, 5 and 9 spines give: (3⁻ᵖ − 5⁻ᵖ)/(5⁻ᵖ − 9⁻ᵖ), which grows with p; at most 6.
-double order_of(const std::vector<double>& v) {
+double order_of(const Recycled<double>& v) {
     const double found = std::abs((v[0] - v[1]) / (v[1] - v[2]));
     double p = 0.05;
     for (; p < 6; p += 0.05)
@@ -275,15 +275,15 @@ TEST(WideOutline, AnEdgeThatLeapsMarksAllThatItPassesOver) {
     brush::Tuft tuft = brush::make_tuft(brush::load_preset("flat-12"), 5);
     const brush::ContactPlane ground;
     const double length = tuft.preset.length;
-    std::vector<Trail> before;
-    std::vector<std::pair<double, double>> covered;
+    Recycled<Trail> before;
+    Recycled<std::pair<double, double>> covered;
     double most = 0, least = 1e9;
     int leaps = 0;
     for (int i = 0; i <= 30; ++i) {
         const brush::Pose pose{.position = {0, 0, length + 1e-5 - 1e-4 * i}};
         const brush::TuftState state = brush::step(tuft, pose, std::span(&ground, 1), 1e-3);
-        const std::vector<Trail> trails = find_trails(state, kFlat, {}, length, 1e-4);
-        const std::vector<Trail> leapt = leapt_trails(trails, kFlat, before, kFlat, {0, 0});
+        const Recycled<Trail> trails = find_trails(state, kFlat, {}, length, 1e-4);
+        const Recycled<Trail> leapt = leapt_trails(trails, kFlat, before, kFlat, {0, 0});
         leaps += !leapt.empty();
         double lo = 1e9, hi = -1e9;
         for (const Outline& o : outlines_of(trails, 20, leapt))
@@ -322,7 +322,7 @@ Trail lying_trail(int branch, const Vec2& at, double a, double b) {
 TEST(WideOutline, HairBetweenSplayedSpinesMeetsMidway) {
     constexpr double kHalf = 1e-3, kThick = 2e-4, kChord = Trail::kStripChord;
     for (const double apart : {1e-3, 3e-3, 5e-3, 9e-3}) {
-        std::vector<Trail> trails{lying_trail(0, {0, 0}, kHalf, kThick), lying_trail(1, {0, apart}, kHalf, kThick)};
+        Recycled<Trail> trails{lying_trail(0, {0, 0}, kHalf, kThick), lying_trail(1, {0, apart}, kHalf, kThick)};
         trails[0].openings.push_back({1, {0.0, 0.0}});
         fill_rows(trails);
         const double reach = std::clamp(0.5 * apart, kChord * kHalf, 3 * kChord * kHalf);
@@ -338,8 +338,8 @@ TEST(WideOutline, HairBetweenSplayedSpinesMeetsMidway) {
 /// Between two poses of hair that leapt, trails follow each other by less than 0.4 of their extent, from the one to
 /// the other.
 TEST(WideOutline, NoGapIsLeftWhereHairLeapt) {
-    const std::vector<Trail> before{lying_trail(2, {0, 0}, 1e-3, 2e-4)}, now{lying_trail(2, {3e-3, 1e-3}, 1e-3, 2e-4)};
-    const std::vector<Trail> passed = trails_passed(now, before);
+    const Recycled<Trail> before{lying_trail(2, {0, 0}, 1e-3, 2e-4)}, now{lying_trail(2, {3e-3, 1e-3}, 1e-3, 2e-4)};
+    const Recycled<Trail> passed = trails_passed(now, before);
     ASSERT_GT(passed.size(), 2u);
     // Along its hair it is 1 mm long.
     const double most = 0.4 * 1.5e-3;

@@ -57,7 +57,7 @@ render::GlSolid solid_of(const brush::TuftState& tuft, unsigned ink) {
     render::GlSolid solid;
     if (tuft.branches.empty()) return solid;
     const brush::TuftSurface surface = brush::make_tuft_surface(tuft);
-    const std::vector<brush::Section>& spine = tuft.branches.front().sections;
+    const Recycled<brush::Section>& spine = tuft.branches.front().sections;
     const double length = std::max(1e-6, glm::distance(spine.front().centre, spine.back().centre));
     for (std::size_t i = 0; i < surface.positions.size(); ++i) {
         solid.positions.push_back(Vec3f(surface.positions[i]));

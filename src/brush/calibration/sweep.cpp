@@ -95,7 +95,7 @@ Patch patch_of(const TuftState& state) {
         return patch;
     }
     for (const Branch& branch : state.branches) {
-        const std::vector<Section> fine = refine_sections(branch.sections, kFineSections);
+        const Recycled<Section> fine = refine_sections(branch.sections, kFineSections);
         double before = 0;
         for (std::size_t i = 0; i < fine.size(); ++i) {
             const double now = overlap(fine[i]);
@@ -112,7 +112,7 @@ Patch patch_of(const TuftState& state) {
 struct Steady {
     Patch patch;
     double tip = 0;
-    std::vector<Vec3> node;  ///< tip first, metres
+    Recycled<Vec3> node;  ///< tip first, metres
 };
 
 Steady drag(const Preset& preset, double depth, const Vec2& lean) {

@@ -51,7 +51,7 @@ class ChainModel final : public SpineModel {
   public:
     ChainModel(const Preset& preset, const ChainOptions& options);
     std::unique_ptr<SpineModel> clone() const override { return std::make_unique<ChainModel>(*this); }
-    std::vector<Vec3> nodes() const override;
+    Recycled<Vec3> nodes() const override;
     TuftState step(const SpineModelInput& input) override;
     void straighten(const Pose& pose) override;
 
@@ -69,9 +69,9 @@ class ChainModel final : public SpineModel {
     double least_height(std::size_t node) const {
         return node + 1 < minor_.size() ? options_.effective_radius * minor_[node] : 0;
     }
-    std::vector<Section> sections_of(const SpineModelInput& input, const std::vector<OneSpine>& before);
-    void spread(std::vector<Section>& sections, const SpineModelInput& input, const std::vector<OneSpine>& before);
-    void carry_with_lattice(std::vector<Section>& sections) const;
+    Recycled<Section> sections_of(const SpineModelInput& input, const std::vector<OneSpine>& before);
+    void spread(Recycled<Section>& sections, const SpineModelInput& input, const std::vector<OneSpine>& before);
+    void carry_with_lattice(Recycled<Section>& sections) const;
 
     Preset preset_;
     ChainOptions options_;
@@ -123,8 +123,8 @@ void ChainModel::straighten(const Pose& pose) {
     }
 }
 
-std::vector<Vec3> ChainModel::nodes() const {
-    std::vector<Vec3> out;
+Recycled<Vec3> ChainModel::nodes() const {
+    Recycled<Vec3> out;
     for (std::size_t i = radius_.size(); i-- > 0;)
         out.push_back(spines_.size() == 1 ? spines_[0].node[i] : 0.5 * (spines_[0].node[i] + spines_[1].node[i]));
     return out;
@@ -288,13 +288,13 @@ TuftState ChainModel::step(const SpineModelInput& input) {
     return state;
 }
 
-std::vector<Section> ChainModel::sections_of(const SpineModelInput& input, const std::vector<OneSpine>& before) {
-    const std::vector<Vec3> node = nodes();
+Recycled<Section> ChainModel::sections_of(const SpineModelInput& input, const std::vector<OneSpine>& before) {
+    const Recycled<Vec3> node = nodes();
     const std::vector<double> tip_first(minor_.rbegin(), minor_.rend());
     const Vec3 axis = input.pose.axis();
     WideAxis wide = find_wide_axis(node, axis, input.planes, tip_first, input.pose.rotation * wide_);
     if (spines_.size() == 2) wide = {node.size() - 1, input.pose.rotation * Vec3{1, 0, 0}};
-    std::vector<Section> sections = frame_sections(node, axis, wide.at, wide.direction);
+    Recycled<Section> sections = frame_sections(node, axis, wide.at, wide.direction);
     wide_ = glm::conjugate(input.pose.rotation) * sections.back().e;
     const std::size_t count = sections.size();
     const double share = 1.0 / static_cast<double>(spines_.size()), length = preset_.length;
@@ -322,7 +322,7 @@ std::vector<std::size_t> lateral_nodes(std::size_t count) {
     return out;
 }
 
-void ChainModel::spread(std::vector<Section>& sections, const SpineModelInput& input,
+void ChainModel::spread(Recycled<Section>& sections, const SpineModelInput& input,
                         const std::vector<OneSpine>& before) {
     const std::size_t count = sections.size();
     const double length = preset_.length, newton = preset_.stiffness / (length * length);
@@ -375,7 +375,7 @@ void ChainModel::spread(std::vector<Section>& sections, const SpineModelInput& i
     }
 }
 
-void ChainModel::carry_with_lattice(std::vector<Section>& sections) const {
+void ChainModel::carry_with_lattice(Recycled<Section>& sections) const {
     const std::size_t count = sections.size();
     std::array<std::vector<Vec3>, 2> outward, across;
     std::vector<double> at;

@@ -51,9 +51,9 @@ const ContactPlane& plane_of(std::span<const ContactPlane> planes, std::size_t k
     return planes.size() == 1 ? planes[0] : planes[k];
 }
 
-std::vector<Section> frame_sections(std::span<const Vec3> nodes, const Vec3& axis, std::size_t at, const Vec3& wide) {
+Recycled<Section> frame_sections(std::span<const Vec3> nodes, const Vec3& axis, std::size_t at, const Vec3& wide) {
     const std::vector<Vec3> t = tangents_of(nodes, axis).node;
-    std::vector<Section> out(nodes.size());
+    Recycled<Section> out(nodes.size());
     std::vector<Vec3> e(nodes.size());
     e[at] = normal_part(wide, t[at]);
     for (std::size_t k = at + 1; k < e.size(); ++k) e[k] = parallel_transport(e[k - 1], t[k - 1], t[k]);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "brush/state/tuft_state.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// What all models of the papers share: nodes of a straight tuft, sections round given nodes, planes of the nodes.
@@ -19,7 +20,7 @@ const ContactPlane& plane_of(std::span<const ContactPlane> planes, std::size_t k
 /// Returns sections at `nodes` (tip first), with semi-axes and forces 0. The tangent bisects the two segments; at the
 /// root the one inside is `axis`, the ferrule's. A segment without length takes the tangent before it. e at node
 /// `at` is the part of `wide` normal to the tangent there; from there it is parallel-transported both ways.
-std::vector<Section> frame_sections(std::span<const Vec3> nodes, const Vec3& axis, std::size_t at, const Vec3& wide);
+Recycled<Section> frame_sections(std::span<const Vec3> nodes, const Vec3& axis, std::size_t at, const Vec3& wide);
 
 /// Where the wide axis is known best, and its direction there.
 struct WideAxis {

@@ -22,7 +22,7 @@ Vec3 to_world(const Pose& pose, const Vec3& p) {
 }
 
 /// Frames of the nodes: e is the ferrule's x, transported along the skeleton.
-std::vector<Section> frames_of(std::span<const Vec3> nodes, const Pose& pose) {
+Recycled<Section> frames_of(std::span<const Vec3> nodes, const Pose& pose) {
     return frame_sections(nodes, pose.axis(), nodes.size() - 1, pose.rotation * Vec3{1, 0, 0});
 }
 
@@ -228,13 +228,13 @@ void distend(HairMacro& m, const HairRow& row, const MacroLaw& law) {
     m.stress = stress_at(m, row, law, turns, g);
 }
 
-std::vector<Section> macro_sections(const HairMacro& m, const HairRow& row, const MacroLaw& law, const Pose& pose,
-                                    std::span<const ContactPlane> planes) {
+Recycled<Section> macro_sections(const HairMacro& m, const HairRow& row, const MacroLaw& law, const Pose& pose,
+                                 std::span<const ContactPlane> planes) {
     std::vector<Vec3> nodes = nodes_of(m.skeleton, row);
     const std::vector<HalfSpace> above = half_spaces(planes, nodes);
     // What the solver left below, a rounding, and all of it where the root is below.
     for (std::size_t i = 0; i + 1 < nodes.size() && !above.empty(); ++i) nodes[i] = above[i].projected(nodes[i]);
-    std::vector<Section> sections = frames_of(nodes, pose);
+    Recycled<Section> sections = frames_of(nodes, pose);
     for (std::size_t i = 0; i < sections.size(); ++i) {
         Section& s = sections[i];
         const double turn = value(m.turn, row.t[i]);
@@ -310,7 +310,7 @@ HairMacro part_of(const HairMacro& parent, const Rays& rays, const HairRow& row,
     m.growth = parent.growth;
     m.stress = parent.stress;
     m.touching = parent.touching;
-    const std::vector<Section> sections = macro_sections(parent, row, law, c.pose, c.planes);
+    const Recycled<Section> sections = macro_sections(parent, row, law, c.pose, c.planes);
     std::vector<Vec3> nodes;
     std::vector<double> widening, turns;
     for (std::size_t i = 0; i < row.t.size(); ++i) {

@@ -8,6 +8,7 @@
 #include "brush/papers/macro_stress.h"
 #include "brush/preset/preset.h"
 #include "brush/state/tuft_state.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// A hair macro: the least part of the tuft in the model of Xu, Lau and Pan 2009, ch. 5. An ellipse E(t) with semi-axes
@@ -107,8 +108,8 @@ double macro_stress(const HairMacro& macro, const HairRow& row, const MacroLaw& 
 
 /// Returns the sections, tip first, with a = L and b = S. Moments and pressures are 0. No centre but the root's is
 /// below its plane.
-std::vector<Section> macro_sections(const HairMacro& macro, const HairRow& row, const MacroLaw& law, const Pose& pose,
-                                    std::span<const ContactPlane> planes);
+Recycled<Section> macro_sections(const HairMacro& macro, const HairRow& row, const MacroLaw& law, const Pose& pose,
+                                 std::span<const ContactPlane> planes);
 
 /// Splits the macro at the group of points with the highest stress, if any exceeds `threshold` (5.4.2.3): the group and
 /// what remains become macros of their own. Groups of equal stress split together, so that a mirror image splits alike

@@ -30,7 +30,7 @@ class MacroModel final : public SpineModel {
     }
 
     std::unique_ptr<SpineModel> clone() const override { return std::make_unique<MacroModel>(*this); }
-    std::vector<Vec3> nodes() const override { return nodes_; }
+    Recycled<Vec3> nodes() const override { return {nodes_.begin(), nodes_.end()}; }
     TuftState step(const SpineModelInput& input) override;
     void straighten(const Pose& pose) override;
 

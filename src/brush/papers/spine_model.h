@@ -2,10 +2,10 @@
 
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "brush/preset/preset.h"
 #include "brush/state/tuft_state.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// Interface of the brush models of the source papers. A model is one way to bend the spine of a tuft. `Tuft` holds
@@ -27,14 +27,15 @@ struct SpineModelInput {
 class SpineModel {
   public:
     virtual ~SpineModel() = default;
-    SpineModel& operator=(const SpineModel&) = delete;
 
     /// Returns a copy with the whole state: a copy of a `Tuft` is a snapshot.
     virtual std::unique_ptr<SpineModel> clone() const = 0;
+    /// Takes the whole state of `other` over without allocating. False, and unchanged: it cannot.
+    virtual bool assign(const SpineModel& /*other*/) { return false; }
 
     /// Returns the nodes of the last step, metres, world, tip first, root last. [segments + 1] Before the first step
     /// these are the nodes of a straight tuft at `Pose{}`.
-    virtual std::vector<Vec3> nodes() const = 0;
+    virtual Recycled<Vec3> nodes() const = 0;
 
     /// Moves the ferrule to `input.pose` and bends the tuft against the planes. The caller straightens the model at
     /// the first pose before. Fills of the result: one branch with a section at each of `nodes()`, or several branches
@@ -53,6 +54,7 @@ class SpineModel {
   protected:
     SpineModel() = default;
     SpineModel(const SpineModel&) = default;
+    SpineModel& operator=(const SpineModel&) = default;
 };
 
 /// Returns the model that `preset.spine` names, straight at `Pose{}`. Null for `rod` and `table`, which live in
@@ -66,7 +68,10 @@ class SpineModelCopy {
     explicit SpineModelCopy(std::unique_ptr<SpineModel> model) : model_(std::move(model)) {}
     SpineModelCopy(const SpineModelCopy& other) : model_(other.model_ ? other.model_->clone() : nullptr) {}
     SpineModelCopy(SpineModelCopy&&) noexcept = default;
-    SpineModelCopy& operator=(const SpineModelCopy& other) { return *this = SpineModelCopy(other); }
+    SpineModelCopy& operator=(const SpineModelCopy& other) {
+        if (model_ && other.model_ && (model_ == other.model_ || model_->assign(*other.model_))) return *this;
+        return *this = SpineModelCopy(other);
+    }
     SpineModelCopy& operator=(SpineModelCopy&&) noexcept = default;
 
     explicit operator bool() const { return model_ != nullptr; }

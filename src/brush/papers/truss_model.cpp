@@ -80,7 +80,7 @@ class TrussModel final : public SpineModel {
     }
 
     std::unique_ptr<SpineModel> clone() const override { return std::make_unique<TrussModel>(*this); }
-    std::vector<Vec3> nodes() const override { return nodes_; }
+    Recycled<Vec3> nodes() const override { return {nodes_.begin(), nodes_.end()}; }
     TuftState step(const SpineModelInput& input) override;
     void straighten(const Pose& pose) override;
 
@@ -90,7 +90,7 @@ class TrussModel final : public SpineModel {
     void nudge(const SpineModelInput& input, const Ground& ground);
     void move(const SpineModelInput& input);
     Vec3 hand_force(const SpineModelInput& input) const;
-    std::vector<Section> make_sections(const SpineModelInput& input);
+    Recycled<Section> make_sections(const SpineModelInput& input);
     void share_load(const SpineModelInput& input, TuftState& state) const;
 
     Preset preset_;
@@ -172,7 +172,7 @@ Vec3 TrussModel::hand_force(const SpineModelInput& input) const {
     return normal * space.normal - (size > most ? most / size : 1.0) * drag;
 }
 
-std::vector<Section> TrussModel::make_sections(const SpineModelInput& input) {
+Recycled<Section> TrussModel::make_sections(const SpineModelInput& input) {
     std::vector<double> radius;
     for (std::size_t k = 0; k < skin_.size(); ++k) {
         nodes_[k] = skin_[k].centre(particles_);
@@ -185,7 +185,7 @@ std::vector<Section> TrussModel::make_sections(const SpineModelInput& input) {
     WideAxis wide{nodes_.size() - 1, broad};
     if (shape_.kind == Kind::round)
         wide = find_wide_axis(nodes_, axis, input.planes, radius, input.pose.rotation * wide_);
-    std::vector<Section> sections = frame_sections(nodes_, axis, wide.at, wide.direction);
+    Recycled<Section> sections = frame_sections(nodes_, axis, wide.at, wide.direction);
     for (std::size_t k = 0; k < sections.size(); ++k) {
         Section& s = sections[k];
         const Vec3 along = k + 1 < sections.size() ? s.tangent : axis;
@@ -203,7 +203,7 @@ std::vector<Section> TrussModel::make_sections(const SpineModelInput& input) {
 
 /// Spreads the normal force over the sections that touch, and the springs' moments along the hair.
 void TrussModel::share_load(const SpineModelInput& input, TuftState& state) const {
-    std::vector<Section>& sections = state.branches.front().sections;
+    Recycled<Section>& sections = state.branches.front().sections;
     const std::vector<Vec3> force = spring_forces(truss_, particles_);
     for (int j = 0; j < truss_.count; ++j) {
         const int i = truss_.base_count() + j;

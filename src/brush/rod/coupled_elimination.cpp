@@ -105,7 +105,7 @@ void add_block(double (&to)[N][M], int row, int col, const Block& block) {
 
 /// Buffers of one thread.
 struct Scratch {
-    std::vector<Gain> gain;
+    Recycled<Gain> gain;
     Outboard out;
     double gram[kMaxColumns][kMaxColumns];
 };
@@ -133,7 +133,7 @@ class BlockElimination {
         return true;
     }
 
-    void back_substitute(std::vector<double>& step) const {
+    void back_substitute(Recycled<double>& step) const {
         std::size_t size = 0;
         for (const Solver& s : solvers_) size += 2 * static_cast<std::size_t>(s.n());
         step.resize(size);
@@ -358,13 +358,13 @@ Eigen::MatrixXd node_by_steps(const Solver& s, int i) {
 
 Eigen::MatrixXd CoupledSystem::dense() const {
     Eigen::Index size = 0;
-    std::vector<Eigen::Index> first;
+    Recycled<Eigen::Index> first;
     for (const Solver& s : solvers_) {
         first.push_back(size);
         size += 2 * s.n();
     }
     Eigen::MatrixXd out = Eigen::MatrixXd::Zero(size, size);
-    std::vector<double> own;
+    Recycled<double> own;
     for (std::size_t k = 0; k < solvers_.size(); ++k) {
         const Solver& s = solvers_[k];
         fill_hessian({s.rod, s.shape, s.ws.at, s.ws.derivatives}, own);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kFaces = 0.5;  ///< of the depth, shift out of the row up to which neighbours face each other
 
-Vec3 node_tangent(const Clamp& clamp, const std::vector<Vec3>& node, std::size_t i) {
+Vec3 node_tangent(const Clamp& clamp, const Recycled<Vec3>& node, std::size_t i) {
     const Vec3 inner = i == 0 ? clamp.tangent : glm::normalize(node[i] - node[i - 1]);
     if (i + 1 >= node.size()) return inner;
     return inner + glm::normalize(node[i + 1] - node[i]);
@@ -62,7 +62,7 @@ PairEnergy pair_energy(const CouplingLaw& law, double touching, double spread, d
 void CoupledSystem::freeze_pairs() {
     for (FrozenPair& f : pairs_) {
         const Solver &a = solvers_[f.pair->first], &b = solvers_[f.pair->second];
-        const std::vector<Vec3>&x = a.ws.at.node, &y = b.ws.at.node;
+        const Recycled<Vec3>&x = a.ws.at.node, &y = b.ws.at.node;
         // The row's direction at rest is carried along the mean of both rods.
         const Vec2& row = f.pair->direction;
         const auto row_of = [&](const Clamp& c) { return row.x * c.side + row.y * glm::cross(c.tangent, c.side); };

@@ -2,10 +2,10 @@
 
 #include <Eigen/Dense>
 #include <span>
-#include <vector>
 
 #include "brush/rod/coupled_rods.h"
 #include "brush/rod/rod_solver.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// Coupling energy of neighbouring rods and the Newton step of all rods together. Internal to the rod solver.
@@ -29,13 +29,13 @@ struct SegmentShear {
 
 struct FrozenPair {
     const CoupledPair* pair = nullptr;
-    int nodes = 0;                 ///< m + 1
-    std::vector<double> weight;    ///< [m+1] length of hair that a node stands for
-    std::vector<FrozenNode> node;  ///< [m+1]
-    std::vector<Sym3> curvature;  ///< [m+1] ∂²U/∂d² of the last evaluation, times the weight; without shear along t
-    std::vector<double> normal;       ///< [m+1] k_n ⟨g₀ − g⟩ there
-    std::vector<double> lagged;       ///< [m+1] the same of the pass before, or of the last solve: it bounds friction
-    std::vector<SegmentShear> shear;  ///< [m] there, or empty
+    int nodes = 0;              ///< m + 1
+    Recycled<double> weight;    ///< [m+1] length of hair that a node stands for
+    Recycled<FrozenNode> node;  ///< [m+1]
+    Recycled<Sym3> curvature;   ///< [m+1] ∂²U/∂d² of the last evaluation, times the weight; without shear along t
+    Recycled<double> normal;    ///< [m+1] k_n ⟨g₀ − g⟩ there
+    Recycled<double> lagged;    ///< [m+1] the same of the pass before, or of the last solve: it bounds friction
+    Recycled<SegmentShear> shear;  ///< [m] there, or empty
 
     int segments() const { return nodes - 1; }
 };
@@ -54,6 +54,8 @@ class CoupledSystem {
     void differentiate_twice();
     int newton_step(bool by_eigenvectors);
     double try_step(double scale);
+    double probe_step(double scale) { return try_step(scale); }
+    void complete_step() {}
     void accept();
 
     /// Freezes the directions and the friction of the pairs for nodes that lie as in `at`.
@@ -74,7 +76,7 @@ class CoupledSystem {
     std::span<FrozenPair> pairs_;
     const CouplingLaw& law_;
     double value_ = 0, trial_value_ = 0;
-    std::vector<double> gradient_, step_;
+    Recycled<double> gradient_, step_;
 };
 
 }  // namespace tuft::brush::rod

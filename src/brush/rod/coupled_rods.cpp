@@ -14,10 +14,10 @@ namespace {
 constexpr double kSettled = 1e-3;  ///< change of t and m between passes, radians, that is no change
 
 struct Work {
-    std::vector<Solver> solvers;
-    std::vector<FrozenPair> pairs;
-    std::vector<double> miss;  ///< of the pairs' lagged normal forces in the pass before
-    double relaxation = 1;     ///< of those forces
+    Recycled<Solver> solvers;
+    Recycled<FrozenPair> pairs;
+    Recycled<double> miss;  ///< of the pairs' lagged normal forces in the pass before
+    double relaxation = 1;  ///< of those forces
 };
 
 FrozenPair frozen_pair(const CoupledPair& pair, std::span<const CoupledRod> rods) {
@@ -72,8 +72,8 @@ void start(Work& w, CoupledSystem& system) {
     system.evaluate_all();
 }
 
-std::vector<FrozenNode> nodes_of(std::span<const FrozenPair> pairs) {
-    std::vector<FrozenNode> out;
+Recycled<FrozenNode> nodes_of(std::span<const FrozenPair> pairs) {
+    Recycled<FrozenNode> out;
     for (const FrozenPair& f : pairs) out.insert(out.end(), f.node.begin(), f.node.end());
     return out;
 }
@@ -129,7 +129,7 @@ void slide(double k, double cap, double weight, double u, double& slip, CoupledR
 PairState finish_pair(const FrozenPair& f, const CouplingLaw& law, const Work& w, CoupledResult& out) {
     PairState state;
     PairMemory& memory = *f.pair->memory;
-    const std::vector<Vec3>&x = w.solvers[f.pair->first].ws.at.node, &y = w.solvers[f.pair->second].ws.at.node;
+    const Recycled<Vec3>&x = w.solvers[f.pair->first].ws.at.node, &y = w.solvers[f.pair->second].ws.at.node;
     for (int i = 0; i < f.nodes; ++i) {
         const FrozenNode& frozen = f.node[i];
         const Vec3 d = y[i] - x[i];
@@ -196,7 +196,7 @@ CoupledResult solve_coupled(std::span<const CoupledRod> rods, std::span<const Co
         for (Solver& s : w.solvers) {
             if (!s.fine.empty() && !s.take_normal_forces(passes)) at_rest = false;
         }
-        const std::vector<FrozenNode> before = nodes_of(w.pairs);
+        const Recycled<FrozenNode> before = nodes_of(w.pairs);
         relax_pairs(w, passes);
         system.freeze_pairs();
         converged = at_rest && settled(before, nodes_of(w.pairs), limits.pass_tolerance);

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "brush/rod/rod.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// Rods side by side, coupled where they are neighbours: the spines of a tuft with a wide ferrule. `brush/tuft` calls
@@ -56,20 +56,20 @@ struct CouplingLaw {
 
 /// State of a pair from one solve to the next. [m+1] for m segments that both rods have.
 struct PairMemory {
-    std::vector<Vec2> slip;      ///< u_p of segment i, and v_p of node i
-    std::vector<double> normal;  ///< k_n ⟨g₀ − g⟩ of the last solve
-    std::vector<double> growth;  ///< its change over the last solves, for the first guess
+    Recycled<Vec2> slip;      ///< u_p of segment i, and v_p of node i
+    Recycled<double> normal;  ///< k_n ⟨g₀ − g⟩ of the last solve
+    Recycled<double> growth;  ///< its change over the last solves, for the first guess
 };
 
 /// Two neighbours. Node i of both faces the other for i ≤ m, m the smaller number of segments.
 struct CoupledPair {
     int first = 0, second = 1;
-    Vec2 direction{1, 0};          ///< unit, from the first to the second at rest, along the clamps' side and t × side
-    std::vector<double> touching;  ///< [m+1] D₀
-    std::vector<double> spread;    ///< [m+1] D₁ ≥ D₀, or empty: D₀
-    std::vector<double> depth;     ///< [m+1] |v| at which they have slid past each other, or empty: they never do
-    std::vector<double> film;      ///< [m+1] W over that of the law, 0–1, or empty: 1
-    std::vector<double> rest_shift;  ///< [m] s₀, or empty: 0
+    Vec2 direction{1, 0};         ///< unit, from the first to the second at rest, along the clamps' side and t × side
+    Recycled<double> touching;    ///< [m+1] D₀
+    Recycled<double> spread;      ///< [m+1] D₁ ≥ D₀, or empty: D₀
+    Recycled<double> depth;       ///< [m+1] |v| at which they have slid past each other, or empty: they never do
+    Recycled<double> film;        ///< [m+1] W over that of the law, 0–1, or empty: 1
+    Recycled<double> rest_shift;  ///< [m] s₀, or empty: 0
     PairMemory* memory = nullptr;
 
     /// The law between nodes i.
@@ -89,14 +89,14 @@ struct CoupledRod {
 
 /// How a pair stands after a solve. [m+1]
 struct PairState {
-    std::vector<double> distance;  ///< D
-    std::vector<double> gap;       ///< g
-    std::vector<double> faces;     ///< f
+    Recycled<double> distance;  ///< D
+    Recycled<double> gap;       ///< g
+    Recycled<double> faces;     ///< f
 };
 
 struct CoupledResult {
-    std::vector<Result> rods;  ///< forces and energies of each; `converged`, iterations and passes of all together
-    std::vector<PairState> pairs;
+    Recycled<Result> rods;  ///< forces and energies of each; `converged`, iterations and passes of all together
+    Recycled<PairState> pairs;
     double energy = 0;       ///< stored in the coupling, W of unbroken film negative
     double dissipation = 0;  ///< by hair that slides along hair
 };

@@ -108,8 +108,8 @@ void turn_about_clamp(Memory& memory, double angle) {
     memory.turn.clear();
 }
 
-std::vector<Vec3> nodes(const Rod& rod, const Memory& memory) {
-    std::vector<Vec3> x(rod.segments() + 1);
+Recycled<Vec3> nodes(const Rod& rod, const Memory& memory) {
+    Recycled<Vec3> x(rod.segments() + 1);
     x[0] = memory.clamp.position;
     for (int j = 0; j < rod.segments(); ++j) x[j + 1] = x[j] + rod.length[j] * memory.tangent[j];
     return x;

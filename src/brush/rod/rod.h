@@ -2,10 +2,10 @@
 
 #include <array>
 #include <span>
-#include <vector>
 
 #include "brush/rod/profile.h"
 #include "core/geometry/types.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// Discrete elastic rod in frictional contact: the solver of the spine of a tuft. `brush/tuft` calls `solve` for
@@ -37,12 +37,12 @@ inline constexpr int kMaxSegments = 128;
 
 /// A rod of n segments, in units of L and B0.
 struct Rod {
-    std::vector<double> length;     ///< [n] segment lengths
-    std::vector<double> stiffness;  ///< [n] joint k_j; joint j sits at the root of segment j
-    std::vector<double> yield;      ///< [n] joint angle θ_e where yielding starts; infinite: elastic
-    std::vector<double> weight;     ///< [n+1] tributary length of each node
-    double plastic_share = 1;       ///< part of k_j in stops that yield; the rest stays elastic
-    double buckling = 0;            ///< least load that buckles it as a column with its tip pinned
+    Recycled<double> length;     ///< [n] segment lengths
+    Recycled<double> stiffness;  ///< [n] joint k_j; joint j sits at the root of segment j
+    Recycled<double> yield;      ///< [n] joint angle θ_e where yielding starts; infinite: elastic
+    Recycled<double> weight;     ///< [n+1] tributary length of each node
+    double plastic_share = 1;    ///< part of k_j in stops that yield; the rest stays elastic
+    double buckling = 0;         ///< least load that buckles it as a column with its tip pinned
     int segments() const { return static_cast<int>(length.size()); }
 };
 
@@ -177,13 +177,13 @@ struct ContactMemory {
 /// State of the rod from one solve to the next.
 struct Memory {
     Clamp clamp;
-    std::vector<Vec3> tangent;  ///< [n] unit
+    Recycled<Vec3> tangent;  ///< [n] unit
     /// [n] change of each tangent in the last solve, clamp's frame, for the first guess; or empty.
-    std::vector<Vec3> turn;
-    double moved = 0;                    ///< displacement of the clamp in the last solve
-    std::vector<Vec3> node;              ///< [n+1]
-    std::vector<JointMemory> joint;      ///< [n]
-    std::vector<ContactMemory> contact;  ///< [points_per_segment n + 1], then one per wall
+    Recycled<Vec3> turn;
+    double moved = 0;                 ///< displacement of the clamp in the last solve
+    Recycled<Vec3> node;              ///< [n+1]
+    Recycled<JointMemory> joint;      ///< [n]
+    Recycled<ContactMemory> contact;  ///< [points_per_segment n + 1], then one per wall
 };
 
 /// Result of one solve, in units of L and B0.
@@ -193,15 +193,15 @@ struct Result {
     double bend_energy = 0;  ///< stored in the joints
     /// Stored in indented and sticking contacts and in the wet film (negative while it attracts).
     double contact_energy = 0;
-    double dissipation = 0;            ///< by yielding, slip and damping in this solve
-    std::vector<double> moment;        ///< [n] |m| at the joints
-    std::vector<double> normal_force;  ///< [n+1], of the contact points, distributed to the nodes
-    std::vector<Vec3> contact_force;   ///< [n+1] on the rod, friction and walls included
-    std::vector<Vec3> wall_force;      ///< [n+1] part of it from walls; empty without walls
-    std::vector<Vec3> slip;     ///< [n+1] displacement of the slipping hair over the surface, weighted by friction
-    std::vector<Obstacle> met;  ///< [n+1] the plane that each node meets at its final position, or empty
-    Vec3 force{0};              ///< sum of contact forces
-    Vec3 root_moment{0};        ///< of all external forces about the root
+    double dissipation = 0;         ///< by yielding, slip and damping in this solve
+    Recycled<double> moment;        ///< [n] |m| at the joints
+    Recycled<double> normal_force;  ///< [n+1], of the contact points, distributed to the nodes
+    Recycled<Vec3> contact_force;   ///< [n+1] on the rod, friction and walls included
+    Recycled<Vec3> wall_force;      ///< [n+1] part of it from walls; empty without walls
+    Recycled<Vec3> slip;            ///< [n+1] displacement of the slipping hair over the surface, weighted by friction
+    Recycled<Obstacle> met;         ///< [n+1] the plane that each node meets at its final position, or empty
+    Vec3 force{0};                  ///< sum of contact forces
+    Vec3 root_moment{0};            ///< of all external forces about the root
 };
 
 /// Returns a straight rod along the clamp's tangent.
@@ -215,7 +215,7 @@ void move_with_clamp(Memory& memory, const Clamp& clamp);
 void turn_about_clamp(Memory& memory, double angle);
 
 /// Returns the nodes root + Σ l_j t_j. [n+1]
-std::vector<Vec3> nodes(const Rod& rod, const Memory& memory);
+Recycled<Vec3> nodes(const Rod& rod, const Memory& memory);
 
 /// Moves the rod rigidly to `clamp`, then minimises Π. Never throws. The work is bounded: when it stops early, the
 /// best state is retained and `converged` is false.
@@ -224,11 +224,11 @@ Result solve(const Rod& rod, Memory& memory, const Clamp& clamp, const SolveInpu
 /// Value and derivatives of Π at one place, for tests.
 struct Probe {
     double value = 0;
-    std::vector<double> gradient;
-    std::vector<double> hessian;  ///< [2n × 2n] lower half, column major
+    Recycled<double> gradient;
+    Recycled<double> hessian;  ///< [2n × 2n] lower half, column major
     /// Newton step, with `damping` times the joint stiffness added to each segment's pivot; empty where that is
     /// not positive definite.
-    std::vector<double> step;
+    Recycled<double> step;
 };
 /// Returns Π and its derivatives for frozen friction after the steps x [2n] from the state in `memory`: two for each
 /// segment, along its normals, in radians. `damping` ≥ 0 enters the Newton step only.

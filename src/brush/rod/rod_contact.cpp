@@ -248,7 +248,7 @@ constexpr int kPieces = 4;
 
 /// Calls f(piece, its hair shortened to the surface) for the pieces of contact point p.
 template <class F>
-void for_clusters(const Frozen& frozen, int p, const std::vector<Vec3>& node, const F& f) {
+void for_clusters(const Frozen& frozen, int p, const Recycled<Vec3>& node, const F& f) {
     const int per = frozen.law->points_per_segment, n = frozen.rod->segments();
     for (int k = 0; k < kPieces; ++k) {
         const double offset = (k + 0.5) / kPieces - 0.5;
@@ -323,7 +323,7 @@ double add_contact(const Frozen& frozen, int p, Evaluation& out) {
     return energy;
 }
 
-Obstacle met_by(const Frozen& frozen, int p, const std::vector<Vec3>& node) {
+Obstacle met_by(const Frozen& frozen, int p, const Recycled<Vec3>& node) {
     const Obstacle& o = frozen.obstacles[p];
     if (frozen.crease[p].share <= 0) return {o.origin, o.normal, o.radius};
     const Vec3 x = frozen.stencil[p].at(node);

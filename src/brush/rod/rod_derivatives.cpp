@@ -76,7 +76,7 @@ JointBlocks joint_blocks(const JointForce& jf, const Joint& joint, double c) {
 
 /// 2n × 2n, column major, of which the lower half is filled.
 struct Lower {
-    std::vector<double>& h;
+    Recycled<double>& h;
     std::size_t size;
 
     double& operator()(int row, int col) {
@@ -199,7 +199,7 @@ bool eliminate(const QuadraticModel& model, double damping, Elimination& work) {
 }
 
 /// Computes the steps from root to tip by what `eliminate` left in `work`.
-void substitute(const QuadraticModel& model, const Elimination& work, std::vector<double>& step) {
+void substitute(const QuadraticModel& model, const Elimination& work, Recycled<double>& step) {
     const auto& [rod, shape, at, d] = model;
     const int n = rod.segments();
     Vec3 moved{0};
@@ -221,14 +221,14 @@ void substitute(const QuadraticModel& model, const Elimination& work, std::vecto
 
 }  // namespace
 
-bool descend(const QuadraticModel& model, double damping, Elimination& work, std::vector<double>& step) {
+bool descend(const QuadraticModel& model, double damping, Elimination& work, Recycled<double>& step) {
     step.resize(2 * model.rod.segments());
     if (!eliminate(model, damping, work)) return false;
     substitute(model, work, step);
     return true;
 }
 
-void fill_hessian(const QuadraticModel& model, std::vector<double>& hessian) {
+void fill_hessian(const QuadraticModel& model, Recycled<double>& hessian) {
     const auto& [rod, shape, at, d] = model;
     const int n = rod.segments();
     const auto size = static_cast<std::size_t>(2 * n);

@@ -178,7 +178,7 @@ double stored_energy(const Rod& rod, int j, const JointMemory& memory, const Vec
     return sum;
 }
 
-void transport_sides(const Clamp& clamp, const std::vector<Vec3>& tangents, std::vector<Vec3>& sides) {
+void transport_sides(const Clamp& clamp, const Recycled<Vec3>& tangents, Recycled<Vec3>& sides) {
     sides.resize(tangents.size());
     Vec3 t = clamp.tangent, s = clamp.side;
     for (std::size_t j = 0; j < tangents.size(); ++j) {

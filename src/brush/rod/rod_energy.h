@@ -1,11 +1,11 @@
 #pragma once
 
 #include <algorithm>
-#include <vector>
 
 #include "brush/rod/rod.h"
 #include "brush/rod/sym3.h"
 #include "brush/rod/wedge.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// Energy Π of the rod and its derivatives, for frozen friction and multipliers. Internal to the rod solver.
@@ -27,11 +27,11 @@ struct Stencil {
     int first = 0, count = 0;
     double w[3] = {0, 0, 0}, d[3] = {0, 0, 0};
 
-    Vec3 at(const std::vector<Vec3>& node) const { return sum(node, w); }
-    Vec3 inwards(const std::vector<Vec3>& node) const { return sum(node, d); }
+    Vec3 at(const Recycled<Vec3>& node) const { return sum(node, w); }
+    Vec3 inwards(const Recycled<Vec3>& node) const { return sum(node, d); }
 
   private:
-    Vec3 sum(const std::vector<Vec3>& node, const double* f) const {
+    Vec3 sum(const Recycled<Vec3>& node, const double* f) const {
         Vec3 x{0};
         for (int k = 0; k < count; ++k) x += f[k] * node[first + k];
         return x;
@@ -61,7 +61,7 @@ Distance distance_of(const Obstacle& o, const Crease& crease, double edge, const
 struct Frozen;
 
 /// Returns the plane that contact point p meets. At an edge it is the plane of the mean force on the point.
-Obstacle met_by(const Frozen& frozen, int p, const std::vector<Vec3>& node);
+Obstacle met_by(const Frozen& frozen, int p, const Recycled<Vec3>& node);
 
 struct Evaluation;
 
@@ -107,29 +107,29 @@ struct PatchPoint {
 /// Constants of one Newton solve.
 struct Frozen {
     const Rod* rod = nullptr;
-    const std::vector<JointMemory>* joint = nullptr;
+    const Recycled<JointMemory>* joint = nullptr;
     std::span<const Obstacle> obstacles;  ///< of the contact points, or empty
-    std::vector<PointPlace> place;        ///< of the contact points
-    std::vector<Stencil> stencil;         ///< of the contact points
-    std::vector<double> placed_length;    ///< segment lengths for which place and stencil were computed,
+    Recycled<PointPlace> place;           ///< of the contact points
+    Recycled<Stencil> stencil;            ///< of the contact points
+    Recycled<double> placed_length;       ///< segment lengths for which place and stencil were computed,
     int placed_per = 0;                   ///< points per segment,
     bool placed_round = false;            ///< and whether rounded
     std::size_t walls_from = 0;           ///< index of the first contact point of a wall
-    std::vector<Crease> crease;           ///< of the contact points
-    std::vector<double> weight;           ///< of the contact points, tributary lengths
+    Recycled<Crease> crease;              ///< of the contact points
+    Recycled<double> weight;              ///< of the contact points, tributary lengths
     const Law* law = nullptr;
     Load load;
     Clamp clamp;
-    std::vector<Friction> friction;  ///< of the contact points
-    std::vector<double> multiplier;  ///< of the contact points
-    std::vector<double> compliance;  ///< of the contact points, end compliance: displacement per force
-    std::vector<Patch> patch;        ///< of the nodes, or none
-    std::vector<PatchPoint> spot;    ///< of the contact points on patches
+    Recycled<Friction> friction;  ///< of the contact points
+    Recycled<double> multiplier;  ///< of the contact points
+    Recycled<double> compliance;  ///< of the contact points, end compliance: displacement per force
+    Recycled<Patch> patch;        ///< of the nodes, or none
+    Recycled<PatchPoint> spot;    ///< of the contact points on patches
 };
 
 /// Unit tangent t and unit normal s of every segment. The pair (s, t × s) is parallel-transported along the rod.
 struct Shape {
-    std::vector<Vec3> tangent, side;
+    Recycled<Vec3> tangent, side;
 };
 
 /// φ = θ/sin θ, χ = -dφ/dc and dχ/dc as functions of c = cos θ.
@@ -148,18 +148,18 @@ struct JointForce {
 /// Value of Π and the terms of its derivatives. Reused between calls.
 struct Evaluation {
     double value = 0;
-    double contact = 0;             ///< part of it: indentation, end compliance, adhesion; no friction
-    std::vector<Vec3> node;         ///< [n+1]
-    std::vector<Vec3> slope;        ///< [n+1] ∂V/∂x_i of contact, friction and load
-    std::vector<Sym3> curvature;    ///< [n+1] ∂²V/∂x_i²
-    std::vector<Sym3> coupling;     ///< [n] ∂²V/∂x_i∂x_{i+1}
-    std::vector<Sym3> across;       ///< [n] ∂²V/∂x_i∂x_{i+2}, the last of them 0
-    std::vector<double> normal;     ///< of the contact points, normal force
-    std::vector<JointForce> joint;  ///< [n]
+    double contact = 0;          ///< part of it: indentation, end compliance, adhesion; no friction
+    Recycled<Vec3> node;         ///< [n+1]
+    Recycled<Vec3> slope;        ///< [n+1] ∂V/∂x_i of contact, friction and load
+    Recycled<Sym3> curvature;    ///< [n+1] ∂²V/∂x_i²
+    Recycled<Sym3> coupling;     ///< [n] ∂²V/∂x_i∂x_{i+1}
+    Recycled<Sym3> across;       ///< [n] ∂²V/∂x_i∂x_{i+2}, the last of them 0
+    Recycled<double> normal;     ///< of the contact points, normal force
+    Recycled<JointForce> joint;  ///< [n]
 };
 
 /// Computes the sides by parallel transport from the clamp along the rod.
-void transport_sides(const Clamp& clamp, const std::vector<Vec3>& tangents, std::vector<Vec3>& sides);
+void transport_sides(const Clamp& clamp, const Recycled<Vec3>& tangents, Recycled<Vec3>& sides);
 
 /// Returns the load's end moment in the frame of any inner segment (plane bending).
 Vec2 end_moment(const Frozen& frozen);
@@ -186,10 +186,10 @@ struct Derivatives {
         Mat2 own;      ///< with respect to its own steps
         Mat2 inboard;  ///< [i][k] with respect to step i of the inner neighbour and its own step k
     };
-    std::vector<Joint> joint;      ///< [n]
-    std::vector<double> gradient;  ///< [2n]
-    std::vector<Vec3> second;      ///< [n] tangent × side
-    std::vector<Segment> segment;  ///< [n]
+    Recycled<Joint> joint;      ///< [n]
+    Recycled<double> gradient;  ///< [2n]
+    Recycled<Vec3> second;      ///< [n] tangent × side
+    Recycled<Segment> segment;  ///< [n]
 };
 /// `differentiate` computes the first derivatives; `differentiate_twice` adds the second for the same shape.
 void differentiate(const Frozen& frozen, const Shape& shape, const Evaluation& at, Derivatives& out);
@@ -211,17 +211,17 @@ struct Elimination {
         Vec3 move[2] = {Vec3{0}, Vec3{0}};
         Mat2 inner;
     };
-    std::vector<Gain> gain;
+    Recycled<Gain> gain;
 };
 
 /// Solves (H + damping · (stiffness of the joints beside each segment)) u = −gradient for the steps u [2n], radians.
 /// `damping` ≥ 0. With the node displacements as further unknowns, x_{j+1} = x_j + l_j T_j u_j, each segment couples
 /// to its neighbours only, and elimination from tip to root costs O(n). Returns false where the matrix is not positive
 /// definite.
-bool descend(const QuadraticModel& model, double damping, Elimination& work, std::vector<double>& step);
+bool descend(const QuadraticModel& model, double damping, Elimination& work, Recycled<double>& step);
 
 /// Computes the lower half of H [2n × 2n, column major].
-void fill_hessian(const QuadraticModel& model, std::vector<double>& hessian);
+void fill_hessian(const QuadraticModel& model, Recycled<double>& hessian);
 
 /// Computes the shape after steps u [2n] scaled by `scale`.
 void advance(const Shape& from, std::span<const double> u, double scale, Shape& to);

@@ -58,6 +58,11 @@ struct RodSystem {
         evaluate(frozen, ws.next, ws.trial);
         return ws.trial.value;
     }
+    double probe_step(double scale) {
+        advance(shape, ws.step, scale, ws.next);
+        return value_of(frozen, ws.next, ws.trial);
+    }
+    void complete_step() { evaluate(frozen, ws.next, ws.trial); }
     void accept() {
         std::swap(shape, ws.next);
         std::swap(ws.at, ws.trial);

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "brush/rod/rod_energy.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// Newton minimisation of Π for frozen friction. Internal to the rod solver.
@@ -19,21 +19,23 @@ using DenseMatrix = Eigen::MatrixXd;
 struct Workspace {
     Evaluation at, trial;
     Shape next;
-    std::vector<Vec3> ahead;  ///< nodes for which friction is frozen
+    Recycled<Vec3> ahead;  ///< nodes for which friction is frozen
     Derivatives derivatives;
     Elimination elimination;
-    std::vector<double> hessian, step;
+    Recycled<double> hessian, step;
     DenseMatrix matrix;
     Eigen::SelfAdjointEigenSolver<DenseMatrix> eigen;
 };
 
 struct NewtonResult {
     bool converged = false;
+    bool moved = false;  ///< a step was taken
     int iterations = 0;
 };
 
 inline constexpr double kLongestStep = 0.3;  ///< radians any segment turns in one iteration
 inline constexpr int kDampedSteps = 6;       ///< of one minimisation, before a system may take its dearer step
+inline constexpr int kWholeTrials = 2;       ///< of a line search; the next ones look at Π alone
 
 /// Largest turn of a segment in `step`, two numbers for each segment, radians.
 inline double longest_turn(std::span<const double> step) {
@@ -48,8 +50,11 @@ inline double longest_turn(std::span<const double> step) {
 ///     tolerance(), value()             of the residual; Π at its shape
 ///     gradient()                       after differentiate()
 ///     newton_step(bool by_eigenvectors)           after differentiate_twice(): fills step(), returns its cost, 0 for
-///     none try_step(scale)                  Π at the shape moved by scale · step() accept() takes the shape that was
-///     tried
+///     none try_step(scale)                  Π at the shape moved by scale · step(), with what its derivatives need
+///     probe_step(scale)                the same without that; complete_step() adds it
+///     accept()                         takes the shape that was tried
+///
+/// Where Π has a kink a search may halve its step to the end.
 template <class System>
 NewtonResult minimise(System& system, int limit) {
     const double tolerance = system.tolerance();
@@ -78,13 +83,18 @@ NewtonResult minimise(System& system, int limit) {
         // Below this a change of Π is round-off.
         const double value = system.value(), noise = 1e-14 * (1 + std::abs(value));
         bool accepted = false;
-        for (int halving = 0; halving < 20 && !accepted; ++halving, scale *= 0.5)
-            accepted = system.try_step(scale) <= value + 1e-4 * scale * slope + noise;
+        for (int halving = 0; halving < 20 && !accepted; ++halving, scale *= 0.5) {
+            const bool whole = halving < kWholeTrials;
+            const double trial = whole ? system.try_step(scale) : system.probe_step(scale);
+            accepted = trial <= value + 1e-4 * scale * slope + noise;
+            if (accepted && !whole) system.complete_step();
+        }
         if (!accepted) {
             out.converged = residual < 1e3 * tolerance && -slope < 1e3 * noise;
             return out;
         }
         system.accept();
+        out.moved = true;
     }
 }
 

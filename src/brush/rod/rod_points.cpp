@@ -14,9 +14,9 @@ struct PointBuilder {
     const Rod& rod;
     const Law& law;
     std::span<const Obstacle> obstacles;
-    const std::vector<Vec3>& node;
+    const Recycled<Vec3>& node;
     Frozen& frozen;
-    std::vector<Obstacle>& fine;
+    Recycled<Obstacle>& fine;
 
     int n() const { return rod.segments(); }
 
@@ -229,14 +229,14 @@ Stencil stencil_at(const Rod& rod, bool round, int j, double s) {
     return out;
 }
 
-std::vector<Vec3> curve_nodes(const Rod& rod, const std::vector<Vec3>& node) {
-    std::vector<Vec3> x = node;
+Recycled<Vec3> curve_nodes(const Rod& rod, const Recycled<Vec3>& node) {
+    Recycled<Vec3> x(node.begin(), node.end());
     for (int j = 1; j < rod.segments(); ++j) x[j] = stencil_at(rod, true, j, 0).at(node);
     return x;
 }
 
-void compute_points(std::span<const Obstacle> obstacles, const std::vector<Vec3>& node, Frozen& frozen,
-                    std::vector<Obstacle>& fine, std::span<const Wall> walls) {
+void compute_points(std::span<const Obstacle> obstacles, const Recycled<Vec3>& node, Frozen& frozen,
+                    Recycled<Obstacle>& fine, std::span<const Wall> walls) {
     fine.clear();
     PointBuilder builder{*frozen.rod, *frozen.law, obstacles, node, frozen, fine};
     builder.compute_points();

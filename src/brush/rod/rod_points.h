@@ -1,9 +1,9 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "brush/rod/rod_energy.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// Contact points of the rod: their positions and planes. Internal to the rod solver; `brush/tuft` uses the rounded
@@ -21,13 +21,13 @@ inline bool rounded(const Law& law) {
 Stencil stencil_at(const Rod& rod, bool round, int j, double s);
 
 /// Returns the nodes' positions on the rounded hair. [n+1]
-std::vector<Vec3> curve_nodes(const Rod& rod, const std::vector<Vec3>& node);
+Recycled<Vec3> curve_nodes(const Rod& rod, const Recycled<Vec3>& node);
 
 /// Computes the contact points: planes and radii interpolated between those of the nodes. At a crease a node has
 /// two planes, or neighbouring nodes have different ones; its points get both. `obstacles`: [n+1], or empty;
 /// `node`: [n+1], node positions. Fills place, stencil, crease, weight and compliance of `frozen`, whose rod and law
 /// are set. `fine`: [points], or empty; the last points are those of the walls, one each.
-void compute_points(std::span<const Obstacle> obstacles, const std::vector<Vec3>& node, Frozen& frozen,
-                    std::vector<Obstacle>& fine, std::span<const Wall> walls = {});
+void compute_points(std::span<const Obstacle> obstacles, const Recycled<Vec3>& node, Frozen& frozen,
+                    Recycled<Obstacle>& fine, std::span<const Wall> walls = {});
 
 }  // namespace tuft::brush::rod

@@ -65,7 +65,7 @@ Friction friction_of(const Law& law, const Hair& hair, double weight, double nor
 
 }  // namespace
 
-void Solver::begin(const Load& load, const std::vector<Vec3>& before) {
+void Solver::begin(const Load& load, const Recycled<Vec3>& before) {
     shape.tangent = memory.tangent;
     transport_sides(memory.clamp, shape.tangent, shape.side);
     Vec3 a = memory.clamp.tangent, side = memory.clamp.side;
@@ -123,11 +123,11 @@ Distance Solver::distance(std::size_t p, const Vec3& x) const {
     return distance_of(fine[p], frozen.crease[p], law.edge, x);
 }
 
-Vec3 Solver::normal_at(std::size_t p, const std::vector<Vec3>& x) const {
+Vec3 Solver::normal_at(std::size_t p, const Recycled<Vec3>& x) const {
     return frozen.crease[p].share <= 0 ? fine[p].normal : met_at(p, x).normal;
 }
 
-void Solver::freeze_friction(const std::vector<Vec3>& x, const std::vector<Vec3>& tangents) {
+void Solver::freeze_friction(const Recycled<Vec3>& x, const Recycled<Vec3>& tangents) {
     if (fine.empty() || law.friction <= 0) return;
     Hair hair;
     for (std::size_t p = 1; p < fine.size(); ++p) {
@@ -191,8 +191,10 @@ void Solver::start() {
 
 bool Solver::take_normal_forces(int pass) {
     double change = 0, sum = 0;
+    forces_changed = false;
     for (std::size_t p = 1; p < fine.size(); ++p) {
         const double fresh = ws.at.normal[p];
+        forces_changed = forces_changed || (law.hard && frozen.multiplier[p] != fresh) || (fresh > 0 && !anchored[p]);
         change += std::abs(fresh - (law.hard ? frozen.multiplier[p] : normal[p]));
         sum += fresh;
         if (law.hard) frozen.multiplier[p] = fresh;
@@ -220,8 +222,10 @@ void Solver::relax(int pass) {
     if (pass > 1) relaxation = std::clamp(relaxation / std::max(1 - ratio, 0.2), 0.2, 1.5);
     buffers.last_miss.assign(fine.size(), 0);
     for (std::size_t p = 1; p < fine.size(); ++p) {
-        buffers.last_miss[p] = ws.at.normal[p] - normal[p];
-        normal[p] = std::max(0.0, normal[p] + relaxation * buffers.last_miss[p]);
+        const double miss = ws.at.normal[p] - normal[p];
+        forces_changed = forces_changed || miss != 0;
+        buffers.last_miss[p] = miss;
+        normal[p] = std::max(0.0, normal[p] + relaxation * miss);
     }
 }
 
@@ -233,7 +237,9 @@ Result Solver::run() {
         out.iterations += r.iterations;
         const bool settled = fine.empty() || take_normal_forces(out.passes);
         out.converged = r.converged && settled;
-        if (out.converged || out.passes >= law.max_passes || out.iterations >= law.max_iterations) {
+        // At a kink of Π that no step leaves, a pass with the same friction is the pass before again.
+        const bool stuck = out.passes > 1 && !r.converged && !r.moved && !forces_changed;
+        if (out.converged || stuck || out.passes >= law.max_passes || out.iterations >= law.max_iterations) {
             break;
         }
         ws.ahead = ws.at.node;

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "brush/rod/rod.h"
 #include "brush/rod/rod_energy.h"
 #include "brush/rod/rod_newton.h"
 #include "brush/rod/rod_points.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// One solve of one rod: friction passes around Newton, then the memory moves on. Internal to the rod solver; coupled
@@ -18,15 +18,15 @@ double clamp_distance(const Clamp& a, const Clamp& b);
 
 /// Buffers of one thread, reused so that a warm solve allocates little.
 struct Buffers {
-    std::vector<Vec3> before;    ///< nodes of the last solve
-    std::vector<Obstacle> fine;  ///< of the contact points
+    Recycled<Vec3> before;    ///< nodes of the last solve
+    Recycled<Obstacle> fine;  ///< of the contact points
     Frozen frozen;
     Shape shape;
-    std::vector<double> normal;  ///< lagged N̂
-    std::vector<Vec3> anchor;
-    std::vector<char> anchored;
-    std::vector<double> last_miss;     ///< of N̂ in the pass before
-    std::vector<double> friction_sum;  ///< [n+1] most friction of the points beside each node
+    Recycled<double> normal;  ///< lagged N̂
+    Recycled<Vec3> anchor;
+    Recycled<char> anchored;
+    Recycled<double> last_miss;     ///< of N̂ in the pass before
+    Recycled<double> friction_sum;  ///< [n+1] most friction of the points beside each node
     Workspace newton;
 };
 
@@ -39,30 +39,32 @@ struct Solver {
     const Law& law;
     Buffers& buffers;
     double moved = 0;  ///< of the clamp since the last solve
-    std::vector<Obstacle>& fine = buffers.fine;
+    Recycled<Obstacle>& fine = buffers.fine;
     Frozen& frozen = buffers.frozen;
     Shape& shape = buffers.shape;
-    std::vector<double>& normal = buffers.normal;
-    std::vector<Vec3>& anchor = buffers.anchor;
-    std::vector<char>& anchored = buffers.anchored;
+    Recycled<double>& normal = buffers.normal;
+    Recycled<Vec3>& anchor = buffers.anchor;
+    Recycled<char>& anchored = buffers.anchored;
     Workspace& ws = buffers.newton;
     double relaxation = 1;
     double recovered = 0;  ///< energy lost by the set going back
+    /// The last `take_normal_forces` changed what friction is frozen from.
+    bool forces_changed = false;
 
     int n() const { return rod.segments(); }
 
-    void begin(const Load& load, const std::vector<Vec3>& before);
+    void begin(const Load& load, const Recycled<Vec3>& before);
     /// Returns the anchor of a point that stuck at `last`. Its stretch along the surface is transported with the
     /// surface's normal, so that neither a rounded edge nor a change of planes pulls at it.
     Vec3 transported_anchor(std::size_t p, const ContactMemory& c, const Vec3& last) const;
     const PointPlace& place(std::size_t p) const { return frozen.place[p]; }
-    Vec3 point(const std::vector<Vec3>& x, std::size_t p) const { return frozen.stencil[p].at(x); }
+    Vec3 point(const Recycled<Vec3>& x, std::size_t p) const { return frozen.stencil[p].at(x); }
     Distance distance(std::size_t p, const Vec3& x) const;
     /// The plane that a contact point meets, and its unit normal.
-    Obstacle met_at(std::size_t p, const std::vector<Vec3>& x) const { return met_by(frozen, static_cast<int>(p), x); }
-    Vec3 normal_at(std::size_t p, const std::vector<Vec3>& x) const;
+    Obstacle met_at(std::size_t p, const Recycled<Vec3>& x) const { return met_by(frozen, static_cast<int>(p), x); }
+    Vec3 normal_at(std::size_t p, const Recycled<Vec3>& x) const;
     /// Freezes friction for the hair where it lies at nodes x along `tangents`.
-    void freeze_friction(const std::vector<Vec3>& x, const std::vector<Vec3>& tangents);
+    void freeze_friction(const Recycled<Vec3>& x, const Recycled<Vec3>& tangents);
     /// Hair that stands may buckle: neither its friction nor its forces go on as they did.
     bool stands() const;
     /// Displacement of the clamp in this solve over that of the last, 0–2; 0 where it did not move.

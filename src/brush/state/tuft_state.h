@@ -2,9 +2,9 @@
 
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 #include "core/geometry/types.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// Poses, sections and forces of a tuft: the data that `brush` gives to all modules above it.
@@ -38,10 +38,10 @@ struct Section {
 
 /// One spine with its sections, tip first (index 0) and root last.
 struct Branch {
-    std::vector<Section> sections;
+    Recycled<Section> sections;
     double ink_share = 1;  ///< of the tuft's ink; shares sum to one
     /// Corners of the hair's section where that is a strip, convex, over the semi-axes at ψ and across; else empty.
-    std::vector<Vec2> strip;
+    Recycled<Vec2> strip;
 };
 
 /// Energy of the whole spine, joules; sub-spines follow it. The hand's work against `TuftState::force` and `moment`
@@ -62,13 +62,13 @@ struct CarriedShape;
 /// Empty for other tufts.
 struct TuftShape {
     std::shared_ptr<const CarriedShape> carried;  ///< its points at rest, triangles and lines
-    std::vector<Vec3> position;                   ///< [points] metres, world
+    Recycled<Vec3> position;                      ///< [points] metres, world
     /// [points] metres over the surface. Of foam: where the point would be if the surface did not hold it; negative
     /// where it is pressed. Empty in air.
-    std::vector<double> height;
+    Recycled<double> height;
     /// [points] metres over the surface, of the middle of the section that a point of a mesh of hair is in; or empty.
-    std::vector<double> middle;
-    std::vector<Vec3> normal;  ///< [points] unit, of the surface under the point; or empty
+    Recycled<double> middle;
+    Recycled<Vec3> normal;  ///< [points] unit, of the surface under the point; or empty
 };
 
 /// Gap between two neighbouring branches.
@@ -76,21 +76,21 @@ struct Opening {
     int first = 0, second = 1;  ///< branches
     /// By how much it is wider than ink bridges, metres; at most 0 where they are joined. Beyond the end of the shorter
     /// one: as at its tip. [sections of the first], tip first
-    std::vector<double> width;
+    Recycled<double> width;
 };
 
 /// State of the tuft at one time: one branch, the sub-spines after bifurcation, or the spines of a ferrule.
 struct TuftState {
-    std::vector<Branch> branches;
+    Recycled<Branch> branches;
     /// The branches are the spines of a ferrule, in the order of `Tuft::spines`; else one trunk, or its sub-spines.
     bool wide = false;
-    bool strips = false;            ///< they stand in a row: the hair of each fills a rectangle, not a disc
-    std::vector<Opening> openings;  ///< of neighbouring spines, or none
-    Vec3 force{0};                  ///< of the surface on the tuft, newtons, world
-    Vec3 device_force{0};           ///< that force filtered by the hair's mass, newtons, world
-    Vec3 moment{0};                 ///< of `force` about the root, N·m, world
-    double root_moment = 0;         ///< bending moment at the ferrule, N·m
-    double normal_force = 0;        ///< newtons
+    bool strips = false;         ///< they stand in a row: the hair of each fills a rectangle, not a disc
+    Recycled<Opening> openings;  ///< of neighbouring spines, or none
+    Vec3 force{0};               ///< of the surface on the tuft, newtons, world
+    Vec3 device_force{0};        ///< that force filtered by the hair's mass, newtons, world
+    Vec3 moment{0};              ///< of `force` about the root, N·m, world
+    double root_moment = 0;      ///< bending moment at the ferrule, N·m
+    double normal_force = 0;     ///< newtons
     TuftEnergy energy;
     TuftShape shape;
     double volume_lost = 0;  ///< m³, by which foam is smaller than at rest

@@ -115,10 +115,10 @@ std::vector<FerruleSpine> ferrule_spines(const Preset& p) {
     return out;
 }
 
-std::vector<Vec2> strip_corners(const Preset& p, const FerruleSpine& spine) {
+Recycled<Vec2> strip_corners(const Preset& p, const FerruleSpine& spine) {
     constexpr double kEven = 0.01;  // of the thickness, change over a strip that is none
     constexpr int kCuts = 6;
-    std::vector<Vec2> upper;
+    Recycled<Vec2> upper;
     if (!has_broad_side(p)) return upper;
     const Vec2 unit{spine.pitch / kRootPi, spine.thick / kRootPi};
     const auto add = [&](double s, double h) {
@@ -138,7 +138,7 @@ std::vector<Vec2> strip_corners(const Preset& p, const FerruleSpine& spine) {
             add(power(std::cos(t)), power(std::sin(t)));
         }
     }
-    std::vector<Vec2> out = upper;
+    Recycled<Vec2> out = upper;
     for (auto at = upper.rbegin(); at != upper.rend(); ++at)
         if (at->y > 1e-9) out.push_back({at->x, -at->y});
     return out;

@@ -4,6 +4,7 @@
 
 #include "brush/preset/preset.h"
 #include "core/geometry/types.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// Ferrule of a tuft: where its spines are set in, how long their hair is, and how they stand to each other at rest.
@@ -46,7 +47,7 @@ std::vector<FerruleSpine> ferrule_spines(const Preset& preset);
 
 /// Returns the corners of a spine's part of the mouth, convex, anticlockwise, about the spine and over the semi-axes of
 /// its ellipse at rest; none for a disc. Error of its width in any direction: 0.5 %.
-std::vector<Vec2> strip_corners(const Preset& preset, const FerruleSpine& spine);
+Recycled<Vec2> strip_corners(const Preset& preset, const FerruleSpine& spine);
 
 /// Two spines whose hair touches.
 struct FerruleNeighbours {

@@ -14,9 +14,9 @@ constexpr double kGround = 0.436, kSteep = 0.8;  // sines of 26° and 53° betwe
 
 }  // namespace
 
-std::vector<rod::Wall> flank_walls(const Preset& p, const Spine& spine, const Quat& turn,
-                                   std::span<const ContactPlane> walls, double wetness) {
-    std::vector<rod::Wall> out;
+Recycled<rod::Wall> flank_walls(const Preset& p, const Spine& spine, const Quat& turn,
+                                std::span<const ContactPlane> walls, double wetness) {
+    Recycled<rod::Wall> out;
     if (walls.empty() || spine.flank.size() != walls.size() || spine.side.size() != walls.size()) return out;
     out.resize(walls.size());
     const int n = spine.rod.segments();

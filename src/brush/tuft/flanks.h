@@ -1,9 +1,9 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "brush/tuft/tuft.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// Contact of the tuft's flanks with walls beside the spine. Called by the spine solver (spine.h).
@@ -19,7 +19,7 @@ namespace tuft::brush {
 /// the support of the ellipse in the direction of the wall's normal n; a is `Spine::flank` of the previous step. A
 /// wall tilted away from e acts as floor: its share falls from 1 to 0 as the angle between e and the wall goes from
 /// 53° to 26°, where the section lies on it.
-std::vector<rod::Wall> flank_walls(const Preset& preset, const Spine& spine, const Quat& turn,
-                                   std::span<const ContactPlane> walls, double wetness);
+Recycled<rod::Wall> flank_walls(const Preset& preset, const Spine& spine, const Quat& turn,
+                                std::span<const ContactPlane> walls, double wetness);
 
 }  // namespace tuft::brush

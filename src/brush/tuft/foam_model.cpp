@@ -132,7 +132,12 @@ class FoamModel : public SpineModel {
     explicit FoamModel(std::shared_ptr<const FoamBody> body) : body_(std::move(body)) { straighten(Pose{}); }
 
     std::unique_ptr<SpineModel> clone() const override { return std::make_unique<FoamModel>(*this); }
-    std::vector<Vec3> nodes() const override { return nodes_; }
+    bool assign(const SpineModel& other) override {
+        const auto* const foam = dynamic_cast<const FoamModel*>(&other);
+        if (foam) *this = *foam;
+        return foam != nullptr;
+    }
+    Recycled<Vec3> nodes() const override { return {nodes_.begin(), nodes_.end()}; }
     TuftState step(const SpineModelInput& input) override;
     void straighten(const Pose& pose) override;
 
@@ -232,6 +237,7 @@ void FoamModel::lean(const SpineModelInput& input, TuftState& state) {
 void FoamModel::make_sections(const SpineModelInput& input, TuftState& state) {
     const Vec3 axis = input.pose.axis(), e = input.pose.rotation * Vec3{1, 0, 0};
     Branch branch;
+    branch.sections.reserve(body_->nodes.size());
     for (std::size_t k = 0; k + 1 < body_->nodes.size(); ++k) {
         Section s{.tangent = axis, .e = e, .m = glm::cross(e, axis), .a = kNodeRadius, .b = kNodeRadius};
         Vec3 at = rest_at(input.pose, body_->nodes[k], 1);
@@ -268,6 +274,11 @@ TuftState FoamModel::step(const SpineModelInput& input) {
     lean(input, state);
     make_sections(input, state);
     const Vec3 axis = pose.axis();
+    state.shape.position.reserve(shape.rest.size());
+    if (!input.planes.empty()) {
+        state.shape.height.reserve(shape.rest.size());
+        state.shape.normal.reserve(shape.rest.size());
+    }
     for (std::size_t v = 0; v < shape.rest.size(); ++v) {
         const Column& column = body_->columns[v];
         const double part = column.end > 0 ? column.depth / column.end : 0;

@@ -76,7 +76,7 @@ Vec3 stretched(const Section& s, const Vec3& v, double along_e, double along_m) 
     return along_e * glm::dot(v, s.e) * s.e + along_m * glm::dot(v, s.m) * s.m;
 }
 
-std::vector<LatticeFrame> frames_of(const Spine& spine, const std::vector<Section>& sections, const Pose& pose) {
+std::vector<LatticeFrame> frames_of(const Spine& spine, std::span<const Section> sections, const Pose& pose) {
     std::vector<LatticeFrame> out;
     Vec3 tangent = pose.axis(), x = pose.rotation * Vec3{1, 0, 0}, y = pose.rotation * Vec3{0, 1, 0};
     for (std::size_t i = 0; i < sections.size(); ++i) {

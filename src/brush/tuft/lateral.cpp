@@ -15,7 +15,7 @@ struct Curvature {
 };
 
 /// By second differences; at the ferrule with a mirrored neighbour (u' = 0), none at the tip.
-Curvature curvature(const std::vector<double>& at, std::size_t i) {
+Curvature curvature(const Recycled<double>& at, std::size_t i) {
     if (i == 0) {
         const double first = at[1] - at[0];
         return {0, -2 / (first * first), 2 / (first * first), 0.5 * first};
@@ -25,7 +25,7 @@ Curvature curvature(const std::vector<double>& at, std::size_t i) {
     return {2 / (a * (a + b)), -2 / (a * b), 2 / (b * (a + b)), 0.5 * (a + b)};
 }
 
-double tributary(const std::vector<double>& at, std::size_t i) {
+double tributary(const Recycled<double>& at, std::size_t i) {
     const std::size_t n = at.size() - 1;
     return 0.5 * (at[std::min(i + 1, n)] - at[i > 0 ? i - 1 : 0]);
 }
@@ -41,7 +41,7 @@ double reach_squared(const LateralSprings& s, std::size_t i) {
 }
 
 /// 2 κ0 λ² r² / h of the slope spring between nodes i - 1 and i.
-double slope_spring(const std::vector<double>& at, const LateralSprings& s, std::size_t i) {
+double slope_spring(const Recycled<double>& at, const LateralSprings& s, std::size_t i) {
     const double a = taper(s, i - 1), b = taper(s, i);
     return s.bend * (a * a * reach_squared(s, i - 1) + b * b * reach_squared(s, i)) / (at[i] - at[i - 1]);
 }
@@ -52,10 +52,10 @@ double bend_spring(const LateralSprings& s, std::size_t i, const Curvature& c) {
     return s.bend * squared * squared * c.weight;
 }
 
-using Band = std::vector<std::array<double, 3>>;
+using Band = Recycled<std::array<double, 3>>;
 
 /// Solves in place by L D Lᵀ; the matrix is positive definite. Leaves 1/D and L in it.
-void solve_band(Band& m, std::vector<double>& x) {
+void solve_band(Band& m, Recycled<double>& x) {
     const std::size_t n = m.size();
     for (std::size_t i = 0; i < n; ++i) {
         double d = m[i][0];
@@ -83,7 +83,7 @@ void solve_band(Band& m, std::vector<double>& x) {
 
 }  // namespace
 
-LateralRow lateral_row(const std::vector<double>& at, const LateralSprings& s) {
+LateralRow lateral_row(const Recycled<double>& at, const LateralSprings& s) {
     LateralRow row;
     Band& m = row.band;
     m.assign(at.size(), {0, 0, 0});
@@ -117,14 +117,14 @@ LateralRow lateral_row(const std::vector<double>& at, const LateralSprings& s) {
     return row;
 }
 
-std::vector<double> solve_lateral(const std::vector<double>& at, const LateralSprings& s, const LateralSide& side) {
+Recycled<double> solve_lateral(const Recycled<double>& at, const LateralSprings& s, const LateralSide& side) {
     return solve_lateral(lateral_row(at, s), side);
 }
 
-std::vector<double> solve_lateral(const LateralRow& row, const LateralSide& side) {
+Recycled<double> solve_lateral(const LateralRow& row, const LateralSide& side) {
     const std::size_t count = row.band.size();
-    std::vector<char> held(count, 0);
-    std::vector<double> u(count);
+    Recycled<char> held(count, 0);
+    Recycled<double> u(count);
     Band m;
     for (int pass = 0; pass < kWallPasses; ++pass) {
         m = row.band;
@@ -149,8 +149,8 @@ std::vector<double> solve_lateral(const LateralRow& row, const LateralSide& side
     return u;
 }
 
-LateralEnergy lateral_energy(const std::vector<double>& at, const LateralSprings& s, const LateralSide& side,
-                             const std::vector<double>& u) {
+LateralEnergy lateral_energy(const Recycled<double>& at, const LateralSprings& s, const LateralSide& side,
+                             const Recycled<double>& u) {
     LateralEnergy out;
     out.gradient.assign(at.size(), 0);
     const auto v = [&](std::size_t i) { return u[i] / taper(s, i); };
@@ -178,8 +178,8 @@ LateralEnergy lateral_energy(const std::vector<double>& at, const LateralSprings
     return out;
 }
 
-double stored_at_rest(const std::vector<double>& at, const LateralSprings& s, const LateralSide& side,
-                      const std::vector<double>& u) {
+double stored_at_rest(const Recycled<double>& at, const LateralSprings& s, const LateralSide& side,
+                      const Recycled<double>& u) {
     double sum = 0;
     for (std::size_t i = 1; i < at.size(); ++i) {
         double twice = side.push[i] * u[i];
@@ -189,7 +189,7 @@ double stored_at_rest(const std::vector<double>& at, const LateralSprings& s, co
     return sum;
 }
 
-LateralShift drag_lateral(const std::vector<double>& at, const LateralSprings& s, const LateralFriction& friction) {
+LateralShift drag_lateral(const Recycled<double>& at, const LateralSprings& s, const LateralFriction& friction) {
     return drag_lateral(lateral_row(at, s), friction);
 }
 
@@ -199,10 +199,10 @@ LateralShift drag_lateral(const LateralRow& row, const LateralFriction& friction
     out.shift = friction.stuck;
     out.shift[0] = 0;
     if (std::all_of(out.shift.begin(), out.shift.end(), [](double d) { return d == 0; })) return out;
-    std::vector<signed char>& slips = out.slips;
+    Recycled<signed char>& slips = out.slips;
     slips = friction.slips;
     slips.resize(count, 0);
-    std::vector<double> stuck(count), most(count), v(count);
+    Recycled<double> stuck(count), most(count), v(count);
     for (std::size_t i = 1; i < count; ++i) {
         v[i] = stuck[i] = out.shift[i] / row.taper[i];
         most[i] = row.weight[i] * friction.most[i] * row.taper[i];

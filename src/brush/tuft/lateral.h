@@ -2,7 +2,8 @@
 
 #include <array>
 #include <limits>
-#include <vector>
+
+#include "core/system/recycled.h"
 
 /// \file
 /// Side nodes of the tuft: two to every spine node. They give the lateral extent of the hair. Stretch springs pull
@@ -25,54 +26,53 @@ namespace tuft::brush {
 inline constexpr int kWallPasses = 6, kDragPasses = 12;
 
 struct LateralSprings {
-    double stretch = 1e4;  ///< κ, N/m²: force per length of tuft per displacement
-    double bend = 1e4;     ///< κ0 of the bend springs
-    double reach = 2e-3;   ///< λ at the ferrule, m: length over which a push spreads along the tuft where κ = κ0
-    double wall = 100;     ///< κ_w over κ
-    std::vector<double> taper;  ///< r > 0, [n+1], root first, any unit; empty: constant
+    double stretch = 1e4;    ///< κ, N/m²: force per length of tuft per displacement
+    double bend = 1e4;       ///< κ0 of the bend springs
+    double reach = 2e-3;     ///< λ at the ferrule, m: length over which a push spreads along the tuft where κ = κ0
+    double wall = 100;       ///< κ_w over κ
+    Recycled<double> taper;  ///< r > 0, [n+1], root first, any unit; empty: constant
 };
 
 /// One side's nodes, root first. [n+1] each.
 struct LateralSide {
-    std::vector<double> push;   ///< q, N/m, outward
-    std::vector<double> clear;  ///< c, m, displacement at which the node meets a wall; infinite: none
-    double root = 0;            ///< u_0, m: 0 in a ferrule; for a sub-spine, the displacement of its trunk there
+    Recycled<double> push;   ///< q, N/m, outward
+    Recycled<double> clear;  ///< c, m, displacement at which the node meets a wall; infinite: none
+    double root = 0;         ///< u_0, m: 0 in a ferrule; for a sub-spine, the displacement of its trunk there
 };
 
 /// Factorised springs of one row of side nodes, reusable for several loads.
 struct LateralRow {
     /// Lower half of their matrix in v: [i][d] is element (i, i − d); the root's row fixes it at 0.
-    std::vector<std::array<double, 3>> band;
-    std::vector<double> weight, taper;  ///< w_i, metres; r_i / r_0
-    double wall = 0;                    ///< κ_w, N/m²
-    std::array<double, 2> at_root{};    ///< elements (1, 0) and (2, 0) before the root was fixed
+    Recycled<std::array<double, 3>> band;
+    Recycled<double> weight, taper;   ///< w_i, metres; r_i / r_0
+    double wall = 0;                  ///< κ_w, N/m²
+    std::array<double, 2> at_root{};  ///< elements (1, 0) and (2, 0) before the root was fixed
 };
-LateralRow lateral_row(const std::vector<double>& at, const LateralSprings& springs);
+LateralRow lateral_row(const Recycled<double>& at, const LateralSprings& springs);
 
 /// Returns the outward displacements u, metres, of the nodes at arc lengths `at` (metres from the ferrule, strictly
 /// increasing). [n+1]; u_0 = `side.root`.
-std::vector<double> solve_lateral(const std::vector<double>& at, const LateralSprings& springs,
-                                  const LateralSide& side);
-std::vector<double> solve_lateral(const LateralRow& row, const LateralSide& side);
+Recycled<double> solve_lateral(const Recycled<double>& at, const LateralSprings& springs, const LateralSide& side);
+Recycled<double> solve_lateral(const LateralRow& row, const LateralSide& side);
 
 /// E and its gradient at displacements u, for tests. [n+1]; the gradient at the root is 0.
 struct LateralEnergy {
     double value = 0;
-    std::vector<double> gradient;
+    Recycled<double> gradient;
 };
-LateralEnergy lateral_energy(const std::vector<double>& at, const LateralSprings& springs, const LateralSide& side,
-                             const std::vector<double>& u);
+LateralEnergy lateral_energy(const Recycled<double>& at, const LateralSprings& springs, const LateralSide& side,
+                             const Recycled<double>& u);
 
 /// Returns the energy that the springs of one side store at the minimum u of E, joules: E and the work of the push,
 /// Σ w_i [½ q_i u_i − ½ κ_w ⟨u_i − c_i⟩ c_i].
-double stored_at_rest(const std::vector<double>& at, const LateralSprings& springs, const LateralSide& side,
-                      const std::vector<double>& u);
+double stored_at_rest(const Recycled<double>& at, const LateralSprings& springs, const LateralSide& side,
+                      const Recycled<double>& u);
 
 /// Friction of the surface on the side nodes of both sides.
 struct LateralFriction {
-    std::vector<double> most;        ///< T >= 0, N/m on both sides together. [n+1]
-    std::vector<double> stuck;       ///< d, m, displacement at which they stick to the surface. [n+1]
-    std::vector<signed char> slips;  ///< initial guess of the slipping nodes, as in LateralShift; or empty
+    Recycled<double> most;        ///< T >= 0, N/m on both sides together. [n+1]
+    Recycled<double> stuck;       ///< d, m, displacement at which they stick to the surface. [n+1]
+    Recycled<signed char> slips;  ///< initial guess of the slipping nodes, as in LateralShift; or empty
 };
 
 /// Returns the displacements δ, metres, of both side nodes of each pair to the same side under friction. A pair
@@ -83,12 +83,11 @@ struct LateralFriction {
 /// with S the energy of the springs of both sides without walls. Slip dissipates w T |δ − d|, so S grows by at most
 /// the work of friction. Method: passes over the set of sticking nodes, at most kDragPasses, from the given set.
 struct LateralShift {
-    std::vector<double> shift;       ///< δ. [n+1]
-    double stored = 0;               ///< S, joules
-    std::vector<signed char> slips;  ///< 0: sticks; else the sign of the force of the surface. [n+1] or none
+    Recycled<double> shift;       ///< δ. [n+1]
+    double stored = 0;            ///< S, joules
+    Recycled<signed char> slips;  ///< 0: sticks; else the sign of the force of the surface. [n+1] or none
 };
-LateralShift drag_lateral(const std::vector<double>& at, const LateralSprings& springs,
-                          const LateralFriction& friction);
+LateralShift drag_lateral(const Recycled<double>& at, const LateralSprings& springs, const LateralFriction& friction);
 LateralShift drag_lateral(const LateralRow& row, const LateralFriction& friction);
 
 /// Returns the half-width r (1 + v), v = u/r. A smooth limiter holds the outward part below `most` − 1 and the

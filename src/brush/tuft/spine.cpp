@@ -98,9 +98,9 @@ void break_symmetry(const Preset& p, Spine& spine, const Pose& from, const Pose&
 namespace {
 
 /// Planes of a spine's nodes (tip first) as obstacles of its rod (root first).
-std::vector<rod::Obstacle> obstacles_of(const Preset& p, const Spine& spine, std::span<const ContactPlane> planes) {
+Recycled<rod::Obstacle> obstacles_of(const Preset& p, const Spine& spine, std::span<const ContactPlane> planes) {
     const std::size_t count = spine.rest_radius.size();
-    std::vector<rod::Obstacle> out;
+    Recycled<rod::Obstacle> out;
     if (planes.empty()) return out;
     out.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -149,14 +149,14 @@ Solved finish_spine(const SpineStep& step, Spine& spine, SolvedRod rod, const Ne
 Solved solve_spine(const SpineStep& step, Spine& spine, const Passed& passed) {
     const Preset& p = step.preset;
     const rod::Law law = law_of(p, step.wetness, step.share, step.dt);
-    const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, step.planes);
+    const Recycled<rod::Obstacle> obstacles = obstacles_of(p, spine, step.planes);
     rod::Result result = rod::solve(
         spine.rod, spine.memory, step.clamp,
         {.obstacles = obstacles, .law = law, .walls = flank_walls(p, spine, step.rotation, step.walls, step.wetness)});
     spine.pressed = result.contact_energy;
     result.dissipation += passed.dissipation;
     for (std::size_t i = 0; i < passed.slip.size(); ++i) result.slip[i] += passed.slip[i];
-    const std::vector<Vec3> node = rod::curve_nodes(spine.rod, spine.memory.node);
+    const Recycled<Vec3> node = rod::curve_nodes(spine.rod, spine.memory.node);
     return finish_spine(step, spine, {std::move(result), node, obstacles});
 }
 
@@ -233,7 +233,7 @@ Vec3 bending_side(const rod::Clamp& clamp, const Vec3& root_before, const Vec3& 
 
 /// Adds the reaction R of the surface at the tip: lever × R is the root moment of the table. Friction is μ R against
 /// the slip of the tip.
-void add_reaction(const Spine& spine, const std::vector<rod::Obstacle>& obstacles, double root_moment, double friction,
+void add_reaction(const Spine& spine, const Recycled<rod::Obstacle>& obstacles, double root_moment, double friction,
                   const Vec3& tip_before, rod::Result& r) {
     const rod::Memory& m = spine.memory;
     const rod::Obstacle& o = obstacles.back();
@@ -263,7 +263,7 @@ Solved bend_by_table(const SpineStep& step, const QueryTable& table, Spine& spin
     const Preset& p = step.preset;
     const rod::Clamp& clamp = step.clamp;
     const rod::Law law = law_of(p, step.wetness, 1, 0);
-    const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, step.planes);
+    const Recycled<rod::Obstacle> obstacles = obstacles_of(p, spine, step.planes);
     rod::Memory& m = spine.memory;
     const Vec3 root_before = m.clamp.position;
     const Vec3 tip_before = rod::nodes(spine.rod, m).back();

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "brush/tuft/tuft.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// One spine of the tuft between the ferrule and its contact planes. Internal to `brush/tuft`.
@@ -18,15 +19,15 @@ struct Solved {
 /// Dissipation and slip on the path to a pose, in units of L and B0.
 struct Passed {
     double dissipation = 0;
-    std::vector<Vec3> slip;  ///< [n+1] as in rod::Result; or none
+    Recycled<Vec3> slip;  ///< [n+1] as in rod::Result; or none
 };
 
 /// A neighbouring spine at the nodes, root first. A spine's sections end where both touch.
 struct Neighbour {
-    std::vector<Vec3> apart;   ///< m, displacement to it
-    std::vector<double> part;  ///< own half-width over the distance of both at rest
+    Recycled<Vec3> apart;   ///< m, displacement to it
+    Recycled<double> part;  ///< own half-width over the distance of both at rest
 };
-using Neighbours = std::vector<Neighbour>;
+using Neighbours = Recycled<Neighbour>;
 
 rod::Clamp clamp_of(const Preset& preset, const Pose& pose);
 

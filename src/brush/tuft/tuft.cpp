@@ -54,7 +54,7 @@ TuftState step_model(Tuft& tuft, const Pose& pose, std::span<const ContactPlane>
     state.touching = state.normal_force > 0 || reaches(state, planes);
     rod::Memory& m = tuft.trunk().memory;
     m.clamp = clamp_of(tuft.preset, pose);
-    const std::vector<Vec3> nodes = tuft.model->nodes();
+    const Recycled<Vec3> nodes = tuft.model->nodes();
     for (std::size_t i = 0; i < m.node.size(); ++i) m.node[i] = nodes[nodes.size() - 1 - i] / length;
     for (std::size_t j = 0; j < m.tangent.size(); ++j) {
         const Vec3 d = m.node[j + 1] - m.node[j];
@@ -97,8 +97,8 @@ Tuft make_tuft(const Preset& preset, std::uint64_t seed) {
     return tuft;
 }
 
-std::vector<Vec3> predicted_nodes(const Tuft& tuft, const Pose& pose) {
-    std::vector<Vec3> out;
+Recycled<Vec3> predicted_nodes(const Tuft& tuft, const Pose& pose) {
+    Recycled<Vec3> out;
     const Quat turn = tuft.posed ? pose.rotation * glm::conjugate(tuft.pose.rotation) : pose.rotation;
     const auto add = [&](const Spine& spine) {
         const Vec3 root = tuft.pose.position / tuft.preset.length;
@@ -113,8 +113,8 @@ std::vector<Vec3> predicted_nodes(const Tuft& tuft, const Pose& pose) {
     return out;
 }
 
-std::vector<Vec3> predicted_sides(const Tuft& tuft, const Pose& pose) {
-    std::vector<Vec3> out;
+Recycled<Vec3> predicted_sides(const Tuft& tuft, const Pose& pose) {
+    Recycled<Vec3> out;
     if (!tuft.posed) return out;
     for (const Spine& spine : tuft.spines)
         for (const Vec3& s : spine.side) out.push_back(pose.position + pose.rotation * (spine.root + s));
@@ -192,8 +192,8 @@ TuftState bend_wide(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> 
     const double shared = std::sqrt(static_cast<double>(p.bristles) / (p.spines * thick_over_wide));
     for (const Beside& beside : tuft.beside) {
         // Beyond the end of the shorter one its tip says whether the skin goes on.
-        const std::vector<double>& gap = beside.gap;
-        std::vector<double> width(tuft.spines[beside.first].rest_radius.size());
+        const Recycled<double>& gap = beside.gap;
+        Recycled<double> width(tuft.spines[beside.first].rest_radius.size());
         for (std::size_t i = 0; i < width.size(); ++i)
             width[width.size() - 1 - i] = gap[std::min(i, gap.size() - 1)] / shared - bridged;
         state.openings.push_back({beside.first, beside.second, std::move(width)});

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "brush/papers/spine_model.h"
 #include "brush/preset/preset.h"
@@ -13,6 +12,7 @@
 #include "brush/tuft/geometry_tuft.h"
 #include "brush/tuft/table.h"
 #include "core/geometry/types.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// The tuft of one brush: its persistent state, and the step that bends it against contact planes. `contact` calls
@@ -32,61 +32,65 @@ inline constexpr double kDeviceForceTime = 4e-3;
 
 /// One solved spine and its state. Arrays go from root to tip.
 struct Spine {
-    rod::Rod rod;                     ///< lengths and stiffness, in units of L and B0
-    rod::Memory memory;               ///< state of joints and contacts
-    std::vector<double> rest_radius;  ///< [n+1] m; √(a b) where the section is no circle
+    rod::Rod rod;                  ///< lengths and stiffness, in units of L and B0
+    rod::Memory memory;            ///< state of joints and contacts
+    Recycled<double> rest_radius;  ///< [n+1] m; √(a b) where the section is no circle
     /// [n+1] m, half-widths at rest along the ferrule's broad side and across it; empty: a circle of `rest_radius`.
-    std::vector<Vec2> rest_section;
-    std::vector<Vec2> strip;  ///< corners of its part of the mouth, see ferrule.h; empty: a disc
-    Vec3 root{0};             ///< m, ferrule frame
-    double lean = 0;          ///< rad, of the clamp towards +x of the ferrule
-    double share = 1;         ///< of the hair
+    Recycled<Vec2> rest_section;
+    Recycled<Vec2> strip;  ///< corners of its part of the mouth, see ferrule.h; empty: a disc
+    Vec3 root{0};          ///< m, ferrule frame
+    double lean = 0;       ///< rad, of the clamp towards +x of the ferrule
+    double share = 1;      ///< of the hair
     /// [n+1] unit, ferrule frame: its x and y carried along the bent spine; or empty.
-    std::vector<Vec3> broad, across;
+    Recycled<Vec3> broad, across;
     Vec3 wide{1, 0, 0};     ///< unit, ferrule frame: direction e at the root of the last step
     double root_width = 0;  ///< m, half-width at the root of a sub-spine; 0: that of the ferrule
     Vec2 one_sided{0};      ///< mean direction of splayed hair, across the clamp; see upright_hair.h
     /// Side nodes of the last step, metres from the root, ferrule frame, tip first, two to a node; or empty.
-    std::vector<Vec3> side;
-    std::vector<double> flank;       ///< m, half-widths of those side nodes without walls; or empty
-    std::vector<double> aside;       ///< [n+1] m, shift of the side nodes along e by friction, or empty
-    std::vector<signed char> slips;  ///< [n+1] nodes that slipped in the last step, or empty
-    double aside_energy = 0;         ///< J, stored in their springs by that shift
-    double pressed = 0;              ///< contact energy of the last solve, B0/L
+    Recycled<Vec3> side;
+    Recycled<double> flank;       ///< m, half-widths of those side nodes without walls; or empty
+    Recycled<double> aside;       ///< [n+1] m, shift of the side nodes along e by friction, or empty
+    Recycled<signed char> slips;  ///< [n+1] nodes that slipped in the last step, or empty
+    double aside_energy = 0;      ///< J, stored in their springs by that shift
+    double pressed = 0;           ///< contact energy of the last solve, B0/L
 };
 
 /// Two neighbouring spines: how they stand at rest, and what they remember.
 struct Beside {
-    int first = 0, second = 1;     ///< spines
-    Vec2 direction{1, 0};          ///< unit, from the first to the second, ferrule frame
-    double face = 0;               ///< m, as in FerruleNeighbours
-    std::vector<double> distance;  ///< m, of their axes at rest, at which their hair touches. [m+1]
-    std::vector<double> shift;     ///< m, along the hair, of the outboard nodes of facing segments at rest. [m]
+    int first = 0, second = 1;  ///< spines
+    Vec2 direction{1, 0};       ///< unit, from the first to the second, ferrule frame
+    double face = 0;            ///< m, as in FerruleNeighbours
+    Recycled<double> distance;  ///< m, of their axes at rest, at which their hair touches. [m+1]
+    Recycled<double> shift;     ///< m, along the hair, of the outboard nodes of facing segments at rest. [m]
     rod::PairMemory memory;
-    std::vector<double> gap;  ///< m, between their hair in the last step, negative: pressed together. [m+1] or empty
+    Recycled<double> gap;  ///< m, between their hair in the last step, negative: pressed together. [m+1] or empty
 };
 
-/// Persistent state of one tuft. `make_tuft` makes it; a copy is a snapshot.
-struct Tuft {
-    Preset preset;
+/// What a step changes of a tuft. Assigned to one of the same brush it allocates nothing.
+struct TuftBend {
     double wetness = 1;   ///< input, 0 dry … 1 wet: friction, cohesion, plasticity
     double ink_left = 1;  ///< input, ink over capacity: splitting
 
     Pose pose;           ///< of the last step
     bool posed = false;  ///< false until the first step
     /// K of them, in a row or in a ring (ferrule.h); a tuft of one has it as the trunk of its sub-spines.
-    std::vector<Spine> spines;
-    std::vector<Beside> beside;  ///< pairs of neighbours
+    Recycled<Spine> spines;
+    Recycled<Beside> beside;  ///< pairs of neighbours
     bool split = false;
-    std::vector<Spine> sub_spines;               ///< sub-spines of the last third, `split_into` of them while split
+    Recycled<Spine> sub_spines;                  ///< sub-spines of the last third, `split_into` of them while split
     double spread = 0;                           ///< separation: 0 nonee point … 1 fully
     double branch_width = 0;                     ///< m, semi-axis of the section at their roots
     Vec3 device_force{0}, device_force_rate{0};  ///< device force f, N, and its rate, N/s
-    Bundles bundles;                             ///< bundles and bristles
-    QueryTable table;                            ///< for the table method only
     /// For the methods of brush/papers and for foam only; the trunk then follows its nodes, and there are no sub-spines
     /// of ours.
     SpineModelCopy model;
+};
+
+/// Persistent state of one tuft. `make_tuft` makes it; a copy is a snapshot.
+struct Tuft : TuftBend {
+    Preset preset;
+    Bundles bundles;                              ///< bundles and bristles
+    QueryTable table;                             ///< for the table method only
     std::shared_ptr<const CarriedShape> carried;  ///< geometry or foam that the spines carry; null: none
 
     Spine& trunk() { return spines.front(); }
@@ -101,11 +105,11 @@ Tuft make_tuft(const Preset& preset, std::uint64_t seed = 0);
 /// Returns the nodes whose nearest surface planes `step` needs, metres, world: the spine moved rigidly with the
 /// ferrule to `pose`, tip first, root last, spine after spine. While split, the nodes of the sub-spines follow in the
 /// same order.
-std::vector<Vec3> predicted_nodes(const Tuft& tuft, const Pose& pose);
+Recycled<Vec3> predicted_nodes(const Tuft& tuft, const Pose& pose);
 
 /// Returns the side nodes of the spines moved as in `predicted_nodes`: two to a node, tip first, spine after spine.
 /// Empty before the first step.
-std::vector<Vec3> predicted_sides(const Tuft& tuft, const Pose& pose);
+Recycled<Vec3> predicted_sides(const Tuft& tuft, const Pose& pose);
 
 /// Moves the ferrule to `pose` and bends the tuft against `planes`: one for each node of `predicted_nodes` in that
 /// order, or one for all, or none (free in air). `walls` are planes beside the spines, one for each of

@@ -11,9 +11,9 @@
 
 namespace tuft::brush {
 
-std::vector<Vec3> node_tangents(const rod::Memory& m) {
+Recycled<Vec3> node_tangents(const rod::Memory& m) {
     const std::size_t n = m.tangent.size();
-    std::vector<Vec3> t(n + 1);
+    Recycled<Vec3> t(n + 1);
     for (std::size_t i = 0; i <= n; ++i) {
         const Vec3& inner = i == 0 ? m.clamp.tangent : m.tangent[i - 1];
         const Vec3& outer = i == n ? m.tangent[n - 1] : m.tangent[i];
@@ -24,8 +24,8 @@ std::vector<Vec3> node_tangents(const rod::Memory& m) {
     return t;
 }
 
-std::vector<Vec3> broad_axes(const rod::Memory& m, std::span<const Vec3> t) {
-    std::vector<Vec3> out(t.size());
+Recycled<Vec3> broad_axes(const rod::Memory& m, std::span<const Vec3> t) {
+    Recycled<Vec3> out(t.size());
     Vec3 x = m.clamp.side, from = m.clamp.tangent;
     for (std::size_t i = 0; i < t.size(); ++i) {
         x = parallel_transport(x, from, t[i]);
@@ -48,7 +48,7 @@ struct Wide {
 };
 
 /// Where the wide axis is known best, and its direction there.
-Wide wide_axis(const SectionInput& in, const std::vector<Vec3>& t) {
+Wide wide_axis(const SectionInput& in, const Recycled<Vec3>& t) {
     const Vec3 kept = in.rotation * in.spine.wide;
     Wide best;
     double most = 0;
@@ -96,12 +96,12 @@ double cubic(double p, double q, double u, double v, double f) {
 /// Relative indentation of the hair round each node, 0 to 1, root first: indentation over radius, mean
 /// over the hair that the node stands for (its hat function), along the cubic through the nodes; hair that stands
 /// on the surface is not pressed flat. A contact that comes in between two nodes so begins smoothly at both.
-std::vector<double> indentation_of(const SectionInput& in, const std::vector<Vec3>& t) {
+Recycled<double> indentation_of(const SectionInput& in, const Recycled<Vec3>& t) {
     constexpr int kPoints = 6;  // per segment
     const std::size_t count = in.node.size();
-    std::vector<double> out(count, 0);
+    Recycled<double> out(count, 0);
     if (in.obstacles.empty()) return out;
-    std::vector<double> z(count), c(count);
+    Recycled<double> z(count), c(count);
     for (std::size_t i = 0; i < count; ++i) {
         z[i] = glm::dot(in.node[i] - in.obstacles[i].origin, in.obstacles[i].normal);
         c[i] = glm::dot(t[i], in.obstacles[i].normal);
@@ -141,9 +141,9 @@ constexpr double kLying = 0.6;  ///< height over b at which wet hair lies by its
 /// the surface, beyond the contact within kFree r. The free end beyond the contact comes down with the contact, and by
 /// the wet film's thickness more, until it touches: all of it from kGrip behind the place on where the hair comes to
 /// touch.
-std::vector<double> lowering(const SectionInput& in, const std::vector<Section>& sections) {
+Recycled<double> lowering(const SectionInput& in, const Recycled<Section>& sections) {
     const std::size_t count = sections.size();
-    std::vector<double> down(count, 0);
+    Recycled<double> down(count, 0);
     if (in.obstacles.empty()) return down;
     const double film = in.preset.adhesion > 0 ? in.wetness * in.preset.adhesion_range : 0;
     double at = 0, gap_before = 0;  // along the hair; how far the hair's side is off the surface there
@@ -182,24 +182,24 @@ namespace {
 
 /// Half-widths of the sections to the side of e and to the other, metres, root first.
 struct Widths {
-    std::vector<double> plus, minus;
-    std::vector<double> free_plus, free_minus;  ///< without walls
+    Recycled<double> plus, minus;
+    Recycled<double> free_plus, free_minus;  ///< without walls
     LateralShift shift;
     double spread_energy = 0;
-    std::vector<Vec2> turn;  ///< as in Section
+    Recycled<Vec2> turn;  ///< as in Section
 };
 
 /// Half-widths of the resting sections along e and across it, metres, root first; and where their broad side is, as in
 /// Section.
 struct Rest {
-    std::vector<double> along, across;
-    std::vector<Vec2> turn;
+    Recycled<double> along, across;
+    Recycled<Vec2> turn;
 };
 
-Rest rest_of(const SectionInput& in, const std::vector<Vec3>& t, const std::vector<Vec3>& e) {
-    if (!in.wide()) return {in.spine.rest_radius, in.spine.rest_radius, std::vector<Vec2>(e.size(), {1, 0})};
+Rest rest_of(const SectionInput& in, const Recycled<Vec3>& t, const Recycled<Vec3>& e) {
+    if (!in.wide()) return {in.spine.rest_radius, in.spine.rest_radius, Recycled<Vec2>(e.size(), {1, 0})};
     Rest out;
-    const std::vector<Vec3> x = broad_axes(in.spine.memory, t);
+    const Recycled<Vec3> x = broad_axes(in.spine.memory, t);
     for (std::size_t i = 0; i < e.size(); ++i) {
         const Vec2& rest = in.spine.rest_section[i];
         const double broad = rest.x * glm::dot(e[i], x[i]), thick = rest.y * glm::dot(e[i], glm::cross(x[i], t[i]));
@@ -235,30 +235,30 @@ double clearance(const SectionInput& in, std::size_t node, const ContactPlane& w
 
 /// Loads of the side nodes, root first.
 struct SideLoads {
-    std::vector<double> at;  ///< metres from the mouth
+    Recycled<double> at;  ///< metres from the mouth
     LateralSide plus, minus;
     LateralFriction friction;
 };
 
 /// Computes what pushes the side nodes out, as if it worked against the wet stretch springs alone:
 /// r (κ1 |m|/M_e0 + κ2 k_F + κ3 i); how far they can go; and the friction of the surface along e.
-SideLoads side_loads(const SectionInput& in, const std::vector<Vec3>& t, const std::vector<Vec3>& e, const Rest& rest) {
+SideLoads side_loads(const SectionInput& in, const Recycled<Vec3>& t, const Recycled<Vec3>& e, const Rest& rest) {
     const Preset& p = in.preset;
     const std::size_t count = e.size();
     const double yield = (p.yield > 0 ? p.yield : 1) / in.share;
     const double newton = p.stiffness / (p.length * p.length);
     const double of_tuft = in.wide() ? in.share : 1;
     const double k_f = std::min(1.0, p.force_gain * glm::length(in.result.force) * of_tuft * newton / p.force_limit);
-    const std::vector<double> indentation = indentation_of(in, t);
+    const Recycled<double> indentation = indentation_of(in, t);
     const double wet = kSides * p.transverse_stiffness;
     SideLoads out;
     auto& [at, plus, minus, friction] = out;
     at.assign(count, 0);
-    plus = {std::vector<double>(count, 0), std::vector<double>(count, std::numeric_limits<double>::infinity())};
+    plus = {Recycled<double>(count, 0), Recycled<double>(count, std::numeric_limits<double>::infinity())};
     const double root = in.spine.root_width;
     if (root > 0) plus.root = side_of_width(rest.along.front(), root, p.flatten_max);
     minus = plus;
-    friction = {std::vector<double>(count, 0), std::vector<double>(count, 0), in.spine.slips};
+    friction = {Recycled<double>(count, 0), Recycled<double>(count, 0), in.spine.slips};
     for (std::size_t i = 0; i < count; ++i) {
         if (i > 0) at[i] = at[i - 1] + in.spine.rod.length[i - 1] * p.length;
         const double moment = i + 1 < count ? in.result.moment[i] : 0;
@@ -287,7 +287,7 @@ SideLoads side_loads(const SectionInput& in, const std::vector<Vec3>& t, const s
 }
 
 /// Half-widths of the sections in equilibrium of the side nodes.
-Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std::vector<Vec3>& e) {
+Widths side_nodes(const SectionInput& in, const Recycled<Vec3>& t, const Recycled<Vec3>& e) {
     const Preset& p = in.preset;
     const std::size_t count = e.size();
     const Rest rest = rest_of(in, t, e);
@@ -300,7 +300,7 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std:
     out.turn = rest.turn;
     const LateralRow row = lateral_row(at, springs);
     out.shift = drag_lateral(row, friction);
-    const std::vector<double>& shift = out.shift.shift;
+    const Recycled<double>& shift = out.shift.shift;
     const bool walled = !in.walls.empty() || in.wide();
     for (std::size_t i = 0; i < count && walled; ++i) {
         plus.clear[i] -= shift[i];
@@ -326,9 +326,9 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std:
 /// Factor ≥ 1 on both semi-axes of each section, root first, by which ink at the point is wider than its hair. The drop
 /// that hangs there has the radius ρ; pressed to the depth δ of the straight hair's point it wets ρ tanh(δ/2ρ). It
 /// reaches 4 ρ up the hair, where the tuft is as thick as the drop, and carries no force.
-std::vector<double> drop_factors(const SectionInput& in) {
+Recycled<double> drop_factors(const SectionInput& in) {
     const double rho = in.wetness * in.preset.tip_drop;
-    std::vector<double> out(in.node.size(), 1);
+    Recycled<double> out(in.node.size(), 1);
     if (in.obstacles.empty() || rho <= 0 || in.wide() || in.share > 1) return out;
     const double length = in.preset.length;
     const rod::Obstacle& obstacle = in.obstacles.back();
@@ -357,9 +357,9 @@ SectionOutput make_sections(const SectionInput& in) {
     const Preset& p = in.preset;
     const rod::Memory& m = in.spine.memory;
     const std::size_t count = m.node.size();
-    const std::vector<Vec3> t = node_tangents(m);
+    const Recycled<Vec3> t = node_tangents(m);
     const Wide wide = wide_axis(in, t);
-    std::vector<Vec3> e(count);
+    Recycled<Vec3> e(count);
     e[wide.node] = wide.direction;
     for (std::size_t i = wide.node + 1; i < count; ++i) e[i] = parallel_transport(e[i - 1], t[i - 1], t[i]);
     for (std::size_t i = wide.node; i-- > 0;) e[i] = parallel_transport(e[i + 1], t[i + 1], t[i]);
@@ -386,11 +386,11 @@ SectionOutput make_sections(const SectionInput& in) {
         section.pressure =
             in.result.normal_force[i] / in.spine.rod.weight[i] * p.stiffness / (p.length * p.length * p.length);
     }
-    const std::vector<double> down = lowering(in, out.sections);
+    const Recycled<double> down = lowering(in, out.sections);
     for (std::size_t i = 1; i < count && !in.obstacles.empty(); ++i) {
         out.sections[count - 1 - i].centre -= down[i] * in.obstacles[i].normal;
     }
-    const std::vector<double> drop = drop_factors(in);
+    const Recycled<double> drop = drop_factors(in);
     for (std::size_t i = 0; i < count; ++i) {
         out.sections[count - 1 - i].a *= drop[i];
         out.sections[count - 1 - i].b *= drop[i];

@@ -1,19 +1,19 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "brush/tuft/spine.h"
 #include "brush/tuft/tuft.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// Cross-sections along a solved spine. Internal to `brush/tuft`.
 namespace tuft::brush {
 
 /// Returns the unit tangents at the nodes, root first: bisectors of the two segments.
-std::vector<Vec3> node_tangents(const rod::Memory& memory);
+Recycled<Vec3> node_tangents(const rod::Memory& memory);
 /// Returns the clamp's side carried along the spine to its nodes by parallel transport, unit, root first.
-std::vector<Vec3> broad_axes(const rod::Memory& memory, std::span<const Vec3> tangents);
+Recycled<Vec3> broad_axes(const rod::Memory& memory, std::span<const Vec3> tangents);
 
 struct SectionInput {
     const Preset& preset;
@@ -32,14 +32,14 @@ struct SectionInput {
 };
 
 struct SectionOutput {
-    std::vector<Section> sections;               ///< tip first
+    Recycled<Section> sections;                  ///< tip first
     Vec3 wide{1, 0, 0};                          ///< e at the root, ferrule frame
-    std::vector<double> aside;                   ///< as in Spine
-    std::vector<signed char> slips;              ///< as in Spine
+    Recycled<double> aside;                      ///< as in Spine
+    Recycled<signed char> slips;                 ///< as in Spine
     double aside_energy = 0, spread_energy = 0;  ///< J
     /// Side nodes from the root, metres, ferrule frame, tip first; the side of e, then the other.
-    std::vector<Vec3> sides;
-    std::vector<double> flank;  ///< as in Spine
+    Recycled<Vec3> sides;
+    Recycled<double> flank;  ///< as in Spine
 };
 
 /// Returns the stiffness of a side node against a wall, relative to that of the contact: side node and cohesion

@@ -55,7 +55,7 @@ rod::Clamp sub_spine_clamp(const Tuft& tuft, int k, int index) {
 
 namespace {
 
-void note_width(Tuft& tuft, const std::vector<Section>& whole) {
+void note_width(Tuft& tuft, const Recycled<Section>& whole) {
     tuft.branch_width = whole[whole.size() - 1 - static_cast<std::size_t>(branch_node(tuft.trunk().rod))].a;
 }
 
@@ -94,7 +94,7 @@ void split(Tuft& tuft, const Branch& whole) {
 void solve_sub_spines(Tuft& tuft, std::span<const ContactPlane> planes, TuftState& state, double dt) {
     const Preset& p = tuft.preset;
     const int k = branch_node(tuft.trunk().rod), count_all = static_cast<int>(tuft.sub_spines.size());
-    const std::vector<Section> whole = std::move(state.branches.front().sections);
+    const Recycled<Section> whole = std::move(state.branches.front().sections);
     note_width(tuft, whole);
     state.branches.clear();
     std::size_t next = whole.size();

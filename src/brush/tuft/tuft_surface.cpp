@@ -48,8 +48,8 @@ std::vector<double> monotone_slopes(const std::vector<double>& v, const std::vec
 
 }  // namespace
 
-std::vector<Section> refine_sections(const std::vector<Section>& in, int between) {
-    if (in.size() < 2 || between <= 0) return in;
+Recycled<Section> refine_sections(std::span<const Section> in, int between) {
+    if (in.size() < 2 || between <= 0) return {in.begin(), in.end()};
     const std::size_t n = in.size();
     std::vector<double> s(n, 0), a(n), b(n), moment(n), pressure(n);
     std::vector<Vec3> centre(n), e(n);
@@ -65,7 +65,7 @@ std::vector<Section> refine_sections(const std::vector<Section>& in, int between
     const std::vector<Vec3> mc = slopes(centre, s);
     const std::vector<double> ma = monotone_slopes(a, s), mb = monotone_slopes(b, s), mm = monotone_slopes(moment, s),
                               mp = monotone_slopes(pressure, s);
-    std::vector<Section> out;
+    Recycled<Section> out;
     out.reserve(n + (n - 1) * between);
     for (std::size_t i = 0; i + 1 < n; ++i) {
         out.push_back(in[i]);
@@ -92,8 +92,8 @@ std::vector<Section> refine_sections(const std::vector<Section>& in, int between
 
 namespace {
 
-void add_branch(const std::vector<Section>& sections, const TuftSurfaceOptions& options, TuftSurface& surface) {
-    const std::vector<Section> rings = refine_sections(sections, options.rings_between_nodes);
+void add_branch(std::span<const Section> sections, const TuftSurfaceOptions& options, TuftSurface& surface) {
+    const Recycled<Section> rings = refine_sections(sections, options.rings_between_nodes);
     if (rings.size() < 2) return;
     const auto p = static_cast<std::uint32_t>(options.points_per_ring);
     const auto first = static_cast<std::uint32_t>(surface.positions.size());
@@ -142,10 +142,10 @@ void add_joint(const TuftState& state, const Opening& opening, const TuftSurface
     // Sections of equal number from the root face each other.
     const std::size_t count = std::min(first.sections.size(), second.sections.size());
     const auto tail = [&](const Branch& b) {
-        const std::vector<Section> own(b.sections.end() - static_cast<long>(count), b.sections.end());
+        const Recycled<Section> own(b.sections.end() - static_cast<long>(count), b.sections.end());
         return refine_sections(own, options.rings_between_nodes);
     };
-    const std::vector<Section> a = tail(first), b = tail(second);
+    const Recycled<Section> a = tail(first), b = tail(second);
     const std::size_t off = first.sections.size() - count, per = 1 + options.rings_between_nodes;
     for (const double side : {1.0, -1.0}) {
         const auto start = static_cast<std::uint32_t>(surface.positions.size());
@@ -178,7 +178,7 @@ namespace {
 
 /// A mesh as it is, with smooth normals.
 void add_mesh(const TuftShape& shape, TuftSurface& surface) {
-    surface.positions = shape.position;
+    surface.positions.assign(shape.position.begin(), shape.position.end());
     surface.normals.assign(shape.position.size(), Vec3{0});
     for (const auto& t : shape.carried->triangles) {
         surface.triangles.insert(surface.triangles.end(), t.begin(), t.end());

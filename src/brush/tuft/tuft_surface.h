@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "brush/tuft/tuft.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// The tuft's surface as triangles. `render`, `app` and the calibration draw it or bound it.
@@ -29,6 +31,6 @@ TuftSurface make_tuft_surface(const TuftState& state, const TuftSurfaceOptions& 
 
 /// Returns the sections of one branch with `between` more in every gap, tip first. Centres, axes, semi-axes, moment
 /// and pressure are interpolated by a cubic spline.
-std::vector<Section> refine_sections(const std::vector<Section>& sections, int between);
+Recycled<Section> refine_sections(std::span<const Section> sections, int between);
 
 }  // namespace tuft::brush

@@ -26,16 +26,16 @@ std::span<const ContactPlane> part_of(std::span<const ContactPlane> all, std::si
 
 /// Tangents and broad axes of the nodes of a spine, unit, root first.
 struct NodeAxes {
-    std::vector<Vec3> along, broad;
+    Recycled<Vec3> along, broad;
 
     explicit NodeAxes(const rod::Memory& memory) : along(node_tangents(memory)), broad(broad_axes(memory, along)) {}
 };
 
 /// Obstacles of one spine (root first) from its planes (tip first). The tuft's reach depends on the direction.
-std::vector<rod::Obstacle> obstacles_of_wide(const Preset& p, const Spine& spine, const NodeAxes& axes,
-                                             std::span<const ContactPlane> planes) {
+Recycled<rod::Obstacle> obstacles_of_wide(const Preset& p, const Spine& spine, const NodeAxes& axes,
+                                          std::span<const ContactPlane> planes) {
     const std::size_t count = spine.rest_radius.size();
-    std::vector<rod::Obstacle> out;
+    Recycled<rod::Obstacle> out;
     if (planes.empty()) return out;
     out.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -49,8 +49,8 @@ std::vector<rod::Obstacle> obstacles_of_wide(const Preset& p, const Spine& spine
 
 /// Half-width of the spread section of each node in a direction of the ferrule frame across the hair, without
 /// neighbours, metres, root first.
-std::vector<double> spread_half_widths(const Spine& spine, const Vec2& direction) {
-    std::vector<double> out;
+Recycled<double> spread_half_widths(const Spine& spine, const Vec2& direction) {
+    Recycled<double> out;
     const std::size_t count = spine.rest_radius.size();
     if (spine.flank.size() != 2 * count || spine.side.size() != 2 * count) return out;
     for (std::size_t i = 0; i < count; ++i) {
@@ -80,10 +80,10 @@ struct FilmHeight {
 
 /// One solve of all spines, with what it needs.
 struct Coupled {
-    std::vector<rod::Law> laws;
-    std::vector<std::vector<rod::Obstacle>> obstacles;
-    std::vector<std::vector<rod::Wall>> walls;
-    std::vector<rod::CoupledPair> pairs;
+    Recycled<rod::Law> laws;
+    Recycled<Recycled<rod::Obstacle>> obstacles;
+    Recycled<Recycled<rod::Wall>> walls;
+    Recycled<rod::CoupledPair> pairs;
 
     rod::CoupledResult solve(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes,
                              std::span<const ContactPlane> beside, double dt, int most_iterations) {
@@ -101,7 +101,7 @@ struct Coupled {
             walls.push_back(flank_walls(p, spine, pose.rotation, part_of(beside, 2 * first, 2 * count), tuft.wetness));
             first += count;
         }
-        std::vector<rod::CoupledRod> rods;
+        Recycled<rod::CoupledRod> rods;
         for (std::size_t k = 0; k < k_all; ++k) {
             Spine& spine = tuft.spines[k];
             rods.push_back(
@@ -118,8 +118,8 @@ struct Coupled {
         for (Beside& beside : tuft.beside) {
             const Spine &first = tuft.spines[beside.first], &second = tuft.spines[beside.second];
             const Vec2& direction = beside.direction;
-            const std::vector<double> left = spread_half_widths(first, direction),
-                                      right = spread_half_widths(second, direction);
+            const Recycled<double> left = spread_half_widths(first, direction),
+                                   right = spread_half_widths(second, direction);
             // The clamp's second axis is −y.
             rod::CoupledPair pair{
                 .first = beside.first, .second = beside.second, .direction = {direction.x, -direction.y}};
@@ -179,19 +179,19 @@ void break_symmetries(Tuft& tuft, const Pose& from, const Pose& to, std::span<co
 
 }  // namespace
 
-std::vector<Spine> make_spines(const Preset& p, const Profile& profile) {
+Recycled<Spine> make_spines(const Preset& p, const Profile& profile) {
     const std::vector<double> whole = spine_segments(p.segments, 0.25 + 0.75 * p.hardness);
-    std::vector<Spine> out;
+    Recycled<Spine> out;
     for (const FerruleSpine& set : ferrule_spines(p)) {
         // The nodes of all spines face each other; a shorter one ends where its hair does.
-        std::vector<double> lengths;
+        Recycled<double> lengths;
         double s = 0;
         for (std::size_t j = 0; j < whole.size() && s < set.length - 1e-12; ++j) {
             const bool last = j + 1 == whole.size() || s + whole[j] + 0.5 * whole[j + 1] > set.length;
             lengths.push_back(last ? set.length - s : whole[j]);
             s += lengths.back();
         }
-        std::vector<double> fractions = lengths;
+        Recycled<double> fractions = lengths;
         for (double& l : fractions) l /= set.length;
         rod::Rod rod = rod::make_rod(profile, fractions);
         rod.plastic_share = p.plastic_share;
@@ -220,12 +220,12 @@ std::vector<Spine> make_spines(const Preset& p, const Profile& profile) {
     return out;
 }
 
-std::vector<Beside> make_beside(const Preset& p, std::span<const Spine> spines) {
-    std::vector<Beside> out;
+Recycled<Beside> make_beside(const Preset& p, std::span<const Spine> spines) {
+    Recycled<Beside> out;
     for (const FerruleNeighbours& pair : ferrule_neighbours(p)) {
         Beside beside{.first = pair.first, .second = pair.second, .direction = pair.direction, .face = pair.face};
         const rod::Memory &first = spines[pair.first].memory, &second = spines[pair.second].memory;
-        const std::vector<Vec3>&x = first.node, &y = second.node;
+        const Recycled<Vec3>&x = first.node, &y = second.node;
         const Vec3 t = glm::normalize(first.clamp.tangent + second.clamp.tangent);
         for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
             const Vec3 d = y[i] - x[i];
@@ -274,9 +274,9 @@ namespace {
 
 /// What follows from the motion of the ferrule to one pose.
 struct Followed {
-    rod::CoupledResult result;            ///< of the last part of the motion
-    std::vector<std::vector<Vec3>> slip;  ///< of each spine, all parts together
-    double dissipation = 0;               ///< all parts together
+    rod::CoupledResult result;      ///< of the last part of the motion
+    Recycled<Recycled<Vec3>> slip;  ///< of each spine, all parts together
+    double dissipation = 0;         ///< all parts together
 };
 
 /// Moves the ferrule to `to` in parts that are small enough to be followed.
@@ -311,11 +311,11 @@ Followed follow_pose(Tuft& tuft, const Pose& to, std::span<const ContactPlane> p
 }
 
 /// Stores the axes of every spine in the frame of the ferrule. Returns the nodes on the rounded hair, [spines][n+1].
-std::vector<std::vector<Vec3>> store_axes(Tuft& tuft, const Quat& rotation) {
-    std::vector<std::vector<Vec3>> node;
+Recycled<Recycled<Vec3>> store_axes(Tuft& tuft, const Quat& rotation) {
+    Recycled<Recycled<Vec3>> node;
     for (Spine& spine : tuft.spines) {
         node.push_back(rod::curve_nodes(spine.rod, spine.memory.node));
-        const std::vector<Vec3> t = node_tangents(spine.memory);
+        const Recycled<Vec3> t = node_tangents(spine.memory);
         spine.broad = broad_axes(spine.memory, t);
         spine.across.resize(t.size());
         const Quat back = glm::conjugate(rotation);
@@ -328,12 +328,12 @@ std::vector<std::vector<Vec3>> store_axes(Tuft& tuft, const Quat& rotation) {
 }
 
 /// Returns the spines beside spine k.
-Neighbours neighbours_of(const Tuft& tuft, std::size_t k, const std::vector<std::vector<Vec3>>& node) {
+Neighbours neighbours_of(const Tuft& tuft, std::size_t k, const Recycled<Recycled<Vec3>>& node) {
     Neighbours neighbours;
     for (const Beside& beside : tuft.beside) {
         const auto one = static_cast<std::size_t>(beside.first), two = static_cast<std::size_t>(beside.second);
         if (one != k && two != k) continue;
-        const std::vector<Vec3>& other = node[one == k ? two : one];
+        const Recycled<Vec3>& other = node[one == k ? two : one];
         Neighbour& neighbour = neighbours.emplace_back();
         for (std::size_t i = 0; i < std::min(node[k].size(), other.size()); ++i) {
             neighbour.apart.push_back(tuft.preset.length * (other[i] - node[k][i]));
@@ -354,7 +354,7 @@ SolvedSpines solve_spines(Tuft& tuft, const Pose& to, std::span<const ContactPla
     out.dissipation = dissipation;
     out.coupling_energy = result.energy;
     out.film_range = p.length * coupling_of(p, tuft.wetness).film_range * (tuft.wetness > 0 ? 1 : 0);
-    const std::vector<std::vector<Vec3>> node = store_axes(tuft, to.rotation);
+    const Recycled<Recycled<Vec3>> node = store_axes(tuft, to.rotation);
     std::size_t first = 0;
     for (std::size_t k = 0; k < tuft.spines.size(); ++k) {
         Spine& spine = tuft.spines[k];

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "brush/tuft/ferrule.h"
 #include "brush/tuft/spine.h"
 #include "brush/tuft/tuft.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// The spines of a wide ferrule, bent together. Internal to `brush/tuft`; `step` calls it where K > 1.
@@ -29,9 +29,9 @@ namespace tuft::brush {
 inline constexpr double kHairModulus = 6e4;  ///< Pa, of packed hair pressed across; a guess
 
 /// Returns the spines of the preset's ferrule, straight, with their root at the pose {}.
-std::vector<Spine> make_spines(const Preset& preset, const Profile& profile);
+Recycled<Spine> make_spines(const Preset& preset, const Profile& profile);
 /// Returns the pairs of neighbours of the preset's ferrule at rest.
-std::vector<Beside> make_beside(const Preset& preset, std::span<const Spine> spines);
+Recycled<Beside> make_beside(const Preset& preset, std::span<const Spine> spines);
 
 /// Clamp of a spine for a pose of the holder.
 rod::Clamp spine_clamp(const Preset& preset, const Spine& spine, const Pose& pose);
@@ -44,7 +44,7 @@ rod::CouplingLaw coupling_of(const Preset& preset, double wetness);
 double rest_reach(const Spine& spine, std::size_t i, const Vec3& x, const Vec3& t, const Vec3& n);
 
 struct SolvedSpines {
-    std::vector<Solved> spines;
+    Recycled<Solved> spines;
     double coupling_energy = 0, dissipation = 0;  ///< units of B0/L; the latter of all rods and pairs
     double film_range = 0;                        ///< m, gap at which the wet film between two spines breaks
 };

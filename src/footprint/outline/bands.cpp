@@ -108,7 +108,7 @@ void Bands::draw(Vec2 p, Vec2 q, double r, double s, const Vec2& across) {
         draw_across(level_.data(), rows, band, first, last);
 }
 
-void Bands::copy_rows(std::vector<std::uint8_t>& level) const {
+void Bands::copy_rows(Recycled<std::uint8_t>& level) const {
     const auto cells = std::span(level_).first(std::size_t(width_) * height_);
     if (steep_)
         transpose(cells, height_, width_, level);

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "core/geometry/types.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// Antialiased bands in a coverage picture. hair.h draws the marks of bristles with it.
@@ -21,12 +21,12 @@ class Bands {
     void draw(Vec2 p, Vec2 q, double r, double s, const Vec2& across);
 
     /// Copies the picture, [width * height] by rows.
-    void copy_rows(std::vector<std::uint8_t>& level) const;
+    void copy_rows(Recycled<std::uint8_t>& level) const;
 
   private:
     int width_, height_;
     bool steep_;
-    std::vector<std::uint8_t> level_;
+    Recycled<std::uint8_t> level_;
 };
 
 }  // namespace tuft::footprint

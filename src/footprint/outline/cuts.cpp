@@ -123,6 +123,19 @@ class BranchSurface {
         return cut;
     }
 
+    /// The same as `at(s).overlap()`, to the bit, without the rest of the cut.
+    double overlap_at(double s) const {
+        if (nodes_.size() == 1) return nodes_[0].overlap();
+        const auto last = static_cast<int>(nodes_.size()) - 2;
+        const int i = std::clamp(static_cast<int>(s), 0, last);
+        const double f = std::clamp(s - i, 0.0, 1.0), h = steps_[i];
+        const Cut &p = nodes_[i], &q = nodes_[i + 1];
+        const Slope &g = slopes_[i], &k = slopes_[i + 1];
+        const double a = hermite(p.a, q.a, g.a, k.a, h, f), b = hermite(p.b, q.b, g.b, k.b, h, f);
+        const double e = z_between(p.e, q.e, f), m = z_between(p.m, q.m, f);
+        return std::sqrt(a * a * e * e + b * b * m * m) - hermite(p.z, q.z, g.z, k.z, h, f);
+    }
+
   private:
     struct Slope {
         Vec2 centre{0};
@@ -150,6 +163,12 @@ class BranchSurface {
         const Vec3 v = (1 - f) * p + f * q;
         const double length = glm::length(v);
         return length > 1e-9 ? v / length : p;
+    }
+
+    static double z_between(const Vec3& p, const Vec3& q, double f) {
+        const Vec3 v = (1 - f) * p + f * q;
+        const double length = glm::length(v);
+        return length > 1e-9 ? v.z / length : p.z;
     }
 
     void set_slopes() {
@@ -182,10 +201,10 @@ class BranchSurface {
         }
     }
 
-    std::vector<Cut> nodes_;
-    std::vector<double> steps_;
-    std::vector<Slope> slopes_;
-    std::vector<double> from_tip_;
+    Recycled<Cut> nodes_;
+    Recycled<double> steps_;
+    Recycled<Slope> slopes_;
+    Recycled<double> from_tip_;
     std::size_t cap_ = 0;  // nodes that close the tip
 };
 
@@ -198,18 +217,18 @@ struct Stretch {
 double find_meeting_point(const BranchSurface& surface, double out, double in) {
     for (int i = 0; i < 26; ++i) {
         const double middle = 0.5 * (out + in);
-        (surface.at(middle).overlap() >= 0 ? in : out) = middle;
+        (surface.overlap_at(middle) >= 0 ? in : out) = middle;
     }
     return in;
 }
 
-std::vector<Stretch> touching_stretches(const BranchSurface& surface) {
-    std::vector<Stretch> found;
+Recycled<Stretch> touching_stretches(const BranchSurface& surface) {
+    Recycled<Stretch> found;
     const int n = static_cast<int>(surface.end()) * kSearchSteps;
     bool before = false;
     for (int i = 0; i <= n; ++i) {
         const double s = double(i) / kSearchSteps;
-        const bool now = surface.at(s).overlap() >= 0;
+        const bool now = surface.overlap_at(s) >= 0;
         if (now && !before)
             found.push_back({i == 0 ? 0 : find_meeting_point(surface, double(i - 1) / kSearchSteps, s), s});
         if (now) found.back().end = s;
@@ -236,10 +255,10 @@ Cut cut_between(const Cut& p, const Cut& q, double f) {
             glm::dot(turn, turn) > 1e-6 ? glm::normalize(turn) : p.turn};
 }
 
-std::vector<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<const brush::ContactPlane> planes) {
+Recycled<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<const brush::ContactPlane> planes) {
     const auto& branches = tuft.branches;
     if (planes.size() == 1) {
-        std::vector<NodePlanes> same;
+        Recycled<NodePlanes> same;
         same.reserve(branches.size());
         for (const brush::Branch& b : branches) same.emplace_back(b.sections.size(), planes[0]);
         return same;
@@ -248,7 +267,7 @@ std::vector<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<cons
         return {NodePlanes(planes.begin(), planes.begin() + branches[0].sections.size())};
     if (branches.size() < 2) return {};
     if (tuft.wide) {
-        std::vector<NodePlanes> own;
+        Recycled<NodePlanes> own;
         std::size_t first = 0;
         for (const brush::Branch& b : branches) {
             if (planes.size() < first + b.sections.size()) return {};
@@ -262,7 +281,7 @@ std::vector<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<cons
     const std::size_t trunk = branches[branches.size() / 2].sections.size();
     const std::size_t sub_spine = branches[0].sections.size();
     if (trunk < sub_spine || planes.size() != trunk + branches.size() * sub_spine) return {};
-    std::vector<NodePlanes> dealt;
+    Recycled<NodePlanes> dealt;
     for (std::size_t k = 0; k < branches.size(); ++k) {
         const auto own = planes.subspan(trunk + k * sub_spine, sub_spine);
         dealt.emplace_back(own.begin(), own.end());
@@ -273,9 +292,9 @@ std::vector<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<cons
     return dealt;
 }
 
-std::vector<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
-                               double length, double film) {
-    std::vector<Trail> found;
+Recycled<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
+                            double length, double film) {
+    Recycled<Trail> found;
     const std::size_t count = tuft.branches.size();
     for (std::size_t k = 0; k < count; ++k) {
         const auto& sections = tuft.branches[k].sections;
@@ -296,6 +315,8 @@ std::vector<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame,
                         .corners = tuft.branches[k].strip};
             for (const brush::Opening& opening : tuft.openings)
                 if (opening.first == trail.branch) trail.openings.push_back({opening.second, {}});
+            trail.cuts.reserve(kSamples);
+            trail.along.reserve(kSamples);
             for (int i = 0; i < kSamples; ++i) {
                 const double f = 0.5 - 0.5 * std::cos(kPi * i / (kSamples - 1));
                 const double s = stretch.begin + f * (stretch.end - stretch.begin);
@@ -391,7 +412,7 @@ void follow_track(Trail& trail, std::size_t begin, std::size_t end, HairTracks::
 
 }  // namespace
 
-void spread_trails(std::vector<Trail>& trails, HairTracks& tracks, const SpreadOptions& options) {
+void spread_trails(Recycled<Trail>& trails, HairTracks& tracks, const SpreadOptions& options) {
     for (Trail& trail : trails) {
         const auto own = 2 * static_cast<std::size_t>(trail.branch);
         if (tracks.tracks.size() < own + 2) tracks.tracks.resize(own + 2);
@@ -402,7 +423,7 @@ void spread_trails(std::vector<Trail>& trails, HairTracks& tracks, const SpreadO
     }
 }
 
-void gather_trails(std::vector<Trail>& trails, double part) {
+void gather_trails(Recycled<Trail>& trails, double part) {
     for (Trail& trail : trails)
         for (Cut& cut : trail.cuts) {
             cut.a *= part;

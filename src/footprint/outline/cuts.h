@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <vector>
 
 #include "brush/state/tuft_state.h"
 #include "brush/tuft/upright_hair.h"
+#include "core/system/recycled.h"
 #include "footprint/outline/outline.h"
 
 /// \file
@@ -36,19 +36,19 @@ Cut cut_between(const Cut& p, const Cut& q, double f);
 /// brush::Opening.
 struct TrailOpening {
     int branch = 0;
-    std::vector<double> width;
+    Recycled<double> width;
 };
 
 /// A part of one branch that touches the surface, from tip side to root side.
 struct Trail {
-    int branch = 0;                      ///< of the tuft
-    std::vector<Cut> cuts;               ///< close together at both ends
-    std::vector<double> along;           ///< position of each cut along the hair, fraction of the length from the root
-    std::size_t trunk = 0;               ///< index of the first cut of the whole tuft, after those of the sub-spine
-    double length = 1;                   ///< of the branch's hair over the tuft's
-    bool strip = false;                  ///< a spine of a row: its hair fills a rectangle, not a disc
-    std::vector<Vec2> corners;           ///< of that strip, see brush::Branch
-    std::vector<TrailOpening> openings;  ///< to neighbours that follow in brush::TuftState::openings
+    int branch = 0;                   ///< of the tuft
+    Recycled<Cut> cuts;               ///< close together at both ends
+    Recycled<double> along;           ///< position of each cut along the hair, fraction of the length from the root
+    std::size_t trunk = 0;            ///< index of the first cut of the whole tuft, after those of the sub-spine
+    double length = 1;                ///< of the branch's hair over the tuft's
+    bool strip = false;               ///< a spine of a row: its hair fills a rectangle, not a disc
+    Recycled<Vec2> corners;           ///< of that strip, see brush::Branch
+    Recycled<TrailOpening> openings;  ///< to neighbours that follow in brush::TuftState::openings
 
     /// Half the thickness of the hair at x in [−1, 1] of a section, over b.
     double chord(double x) const { return strip ? kStripChord : std::sqrt(std::max(0.0, 1 - x * x)); }
@@ -64,8 +64,8 @@ struct TrailPart {
 
 /// Returns the touching parts of all branches, cut into sections; see `outlines_of` (outline.h) for the arguments.
 /// `length` is the tuft's, metres.
-std::vector<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
-                               double length, double film);
+Recycled<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
+                            double length, double film);
 
 /// Half-widths of a dry tuft along the track of its hair, at position = slid − along · length, metres. Friction
 /// holds hair on the surface. Hair therefore follows the track of the hair before it, towards the root; pressing
@@ -74,12 +74,12 @@ std::vector<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame,
 struct HairTracks {
     /// Widths of one branch.
     struct Track {
-        long long first = 0;       ///< index of the position of width[0]
-        std::vector<float> width;  ///< metres; negative: no hair yet
-        double front = 0;          ///< mean position that the widest sections have reached, metres
-        double front_width = -1;   ///< half-width there, metres; negative: none yet
+        long long first = 0;      ///< index of the position of width[0]
+        Recycled<float> width;    ///< metres; negative: no hair yet
+        double front = 0;         ///< mean position that the widest sections have reached, metres
+        double front_width = -1;  ///< half-width there, metres; negative: none yet
     };
-    std::vector<Track> tracks;  ///< two per branch: sub-spine, trunk
+    Recycled<Track> tracks;  ///< two per branch: sub-spine, trunk
 };
 
 /// Position and share of the hair that `spread_trails` spreads.
@@ -92,20 +92,20 @@ struct SpreadOptions {
 /// Widens the trails of a dry tuft. Hair on the surface takes the width of the widest part of the tuft at the time it
 /// passed that position, and is flattened accordingly. A steady drag has the same width up to its tip. A tuft pressed
 /// straight down does not change. A lifted tuft narrows with a slope of at most 0.35.
-void spread_trails(std::vector<Trail>& trails, HairTracks& tracks, const SpreadOptions& options);
+void spread_trails(Recycled<Trail>& trails, HairTracks& tracks, const SpreadOptions& options);
 
 /// Narrows the sections of trails to `part` of their width, 0–1, at constant area: hair that is drawn across itself
 /// draws together behind its point.
-void gather_trails(std::vector<Trail>& trails, double part);
+void gather_trails(Recycled<Trail>& trails, double part);
 
 /// Spreads the sections of spines of a row as far as midway to their neighbours, at constant area: hair that is set
 /// between two spines lies between them. To three times their width at most.
-void fill_rows(std::vector<Trail>& trails);
+void fill_rows(Recycled<Trail>& trails);
 
 /// Adds the upright hair round the foot of the axis, by `foot.share`: a straight taper from the widest section to
 /// the axis' foot, with a round end. Without it the point, which touches first and then slides aside, leaves a
 /// spur. For an unsplit tuft.
-void cover_upright_hair(std::vector<Trail>& trails, const brush::UprightHair& foot, const Frame& frame, double film);
+void cover_upright_hair(Recycled<Trail>& trails, const brush::UprightHair& foot, const Frame& frame, double film);
 
 /// Returns the outline of a trail; without points when the trail is too small.
 Outline outline_of(const Trail& trail, int points);
@@ -114,18 +114,18 @@ Outline outline_of(const Trail& trail, int points);
 /// by ink, one for what lies between two of them, or in a ring between three, at equal parts of their hair; of a row
 /// also one over the heels of all that are joined. `before`:
 /// of `leapt_trails`; what leapt also has an outline of all that it passed over.
-std::vector<Outline> outlines_of(std::span<const Trail> trails, int points, std::span<const Trail> before = {});
+Recycled<Outline> outlines_of(std::span<const Trail> trails, int points, std::span<const Trail> before = {});
 
 /// Returns the trails of the pose before in the frame of `trails`, where a patch leapt: from pose to pose, apart from
 /// the motion of the hand, a part of it moved by more than 0.4 of its own extent in that direction. The edge of hair
 /// that stands touches in a line that slips away by millimetres for a tenth of a millimetre of press. Empty where none
 /// leapt. `frame_before`: of `before`; `hand`: displacement of the hand, metres, (u, v) of `frame`.
-std::vector<Trail> leapt_trails(std::span<const Trail> trails, const Frame& frame, std::span<const Trail> before,
-                                const Frame& frame_before, const Vec2& hand);
+Recycled<Trail> leapt_trails(std::span<const Trail> trails, const Frame& frame, std::span<const Trail> before,
+                             const Frame& frame_before, const Vec2& hand);
 
 /// Returns trails between those of the pose before, `before` of `leapt_trails`, and `trails`, pose by pose, none of
 /// which leaps to the next: where hair leaves a mark each, all that it passed over. Linear in the sections at equal
 /// places of a trail.
-std::vector<Trail> trails_passed(std::span<const Trail> trails, std::span<const Trail> before);
+Recycled<Trail> trails_passed(std::span<const Trail> trails, std::span<const Trail> before);
 
 }  // namespace tuft::footprint

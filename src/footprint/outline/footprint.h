@@ -2,10 +2,10 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "brush/state/tuft_state.h"
 #include "core/geometry/types.h"
+#include "core/system/recycled.h"
 #include "mesh/triangle_mesh.h"
 
 /// \file
@@ -16,13 +16,13 @@ namespace tuft::footprint {
 /// Grey picture of the contact patch. Cell (i, j) has its centre at lo + ((i + 0.5) cell, (j + 0.5) cell). Coverage
 /// is the touched fraction of the cell, in [0, 1], and 0 along the border cells.
 struct Footprint {
-    Frame frame;                         ///< world; n out of the surface, origin on it
-    std::uint32_t triangle = kNone;      ///< of the mesh under the origin
-    Vec2 lo{0};                          ///< metres, lower corner of cell (0, 0)
-    double cell = 0;                     ///< metres
-    int width = 0, height = 0;           ///< cells
-    std::vector<std::uint8_t> coverage;  ///< [width * height], 255 = 1
-    double radius = 0;                   ///< metres: no coverage further than this from the origin
+    Frame frame;                      ///< world; n out of the surface, origin on it
+    std::uint32_t triangle = kNone;   ///< of the mesh under the origin
+    Vec2 lo{0};                       ///< metres, lower corner of cell (0, 0)
+    double cell = 0;                  ///< metres
+    int width = 0, height = 0;        ///< cells
+    Recycled<std::uint8_t> coverage;  ///< [width * height], 255 = 1
+    double radius = 0;                ///< metres: no coverage further than this from the origin
 
     bool empty() const { return coverage.empty(); }
 };

@@ -152,9 +152,9 @@ double swept_share(const TransverseLength& across, double x, const HairInk& ink)
 }
 
 /// Bristles side by side into bands, in a section of half width `a` metres.
-std::vector<Strand> strands_of(std::vector<LowerBristle>& lower, const brush::Bundles& bundles, const HairInk& ink,
-                               double a, const LyingHair& lying) {
-    std::vector<Strand> strands;
+Recycled<Strand> strands_of(Recycled<LowerBristle>& lower, const brush::Bundles& bundles, const HairInk& ink, double a,
+                            const LyingHair& lying) {
+    Recycled<Strand> strands;
     std::sort(lower.begin(), lower.end(), [](const LowerBristle& p, const LowerBristle& q) {
         return p.x != q.x ? p.x < q.x : p.bristle < q.bristle;
     });
@@ -281,9 +281,9 @@ class StrandPen {
 
     const Trail& trail_;
     StrandPicture& picture_;
-    std::vector<std::size_t> at_;  // every third cut of the part, and its last
-    std::vector<Vec2> across_;     // unit, of these cuts
-    double widest_ = 0;            // metres
+    Recycled<std::size_t> at_;  // every third cut of the part, and its last
+    Recycled<Vec2> across_;     // unit, of these cuts
+    double widest_ = 0;         // metres
 };
 
 /// coverage = coverage level / 255, rounded; returns the sum of what it was. For at most 2^16 cells.
@@ -338,10 +338,10 @@ double wetness_of_bundle(double saturation, double holds, double speed) {
     return saturation * holds / (kClosing * (1 + std::max(speed, 0.0) / kFastHair));
 }
 
-std::vector<float> contact_cells(std::span<const Trail> trails, const brush::Bundles& bundles, int branches,
-                                 std::span<const double> ends) {
+Recycled<float> contact_cells(std::span<const Trail> trails, const brush::Bundles& bundles, int branches,
+                              std::span<const double> ends) {
     const std::size_t n = bundles.place.size(), cells = ends.size();
-    std::vector<double> sum(n * cells, 0);
+    Recycled<double> sum(n * cells, 0);
     const auto cell_at = [&](double along) {
         return std::min<std::size_t>(std::upper_bound(ends.begin(), ends.end(), along) - ends.begin(), cells - 1);
     };
@@ -358,14 +358,14 @@ std::vector<float> contact_cells(std::span<const Trail> trails, const brush::Bun
         for (std::size_t k = 0; k < n; ++k) sum[k * cells + cell_at(front)] = 1;
         all = static_cast<double>(n);
     }
-    std::vector<float> parts(sum.size());
+    Recycled<float> parts(sum.size());
     for (std::size_t i = 0; i < sum.size(); ++i) parts[i] = static_cast<float>(sum[i] / all);
     return parts;
 }
 
-std::vector<HairContactPoint> hair_contact_points(std::span<const Trail> trails, const brush::Bundles& bundles,
-                                                  int branches) {
-    std::vector<HairContactPoint> found;
+Recycled<HairContactPoint> hair_contact_points(std::span<const Trail> trails, const brush::Bundles& bundles,
+                                               int branches) {
+    Recycled<HairContactPoint> found;
     for (const Trail& trail : trails) {
         const auto add = [&](std::size_t k, std::size_t i, const Vec2& place, double length) {
             found.push_back({static_cast<std::uint32_t>(k), point_on_surface(trail, trail.cuts[i], place.x),
@@ -379,8 +379,8 @@ std::vector<HairContactPoint> hair_contact_points(std::span<const Trail> trails,
 namespace {
 
 /// Bristles of the lower half in a part of a trail. `places`: of all bristles.
-std::vector<LowerBristle> find_lower_bristles(const TrailPart& part, const brush::Bundles& bundles,
-                                              std::span<const BristlePlace> places) {
+Recycled<LowerBristle> find_lower_bristles(const TrailPart& part, const brush::Bundles& bundles,
+                                           std::span<const BristlePlace> places) {
     const Trail& trail = part.trail;
     // Heights over the middle, of all sections together: one of them would be another at every stamp, and hair that
     // sticks together lies on the same side.
@@ -389,7 +389,7 @@ std::vector<LowerBristle> find_lower_bristles(const TrailPart& part, const brush
         const Cut& cut = trail.cuts[i];
         height += std::abs(trail.along[i + 1] - trail.along[i]) * Vec2{cut.a * cut.e.z, cut.b * cut.m.z};
     }
-    std::vector<LowerBristle> lower;
+    Recycled<LowerBristle> lower;
     for (std::size_t k = 0; k < places.size(); ++k) {
         const Vec2* at = places[k].at(trail, part.begin);
         if (at && glm::dot(height, *at) <= 0) lower.push_back({at->x, &bundles.bristles[k]});
@@ -403,7 +403,7 @@ HairMarks draw_hair_marks(const TouchingHair& hair, const HairInk& ink, const Pi
     HairMarks result{rasterise(hair.outlines, plane, hair.edge), 0};
     Footprint& f = result.footprint;
     if (f.empty()) return result;
-    std::vector<BristlePlace> places;
+    Recycled<BristlePlace> places;
     places.reserve(hair.bundles.bristles.size());
     for (const brush::Bristle& b : hair.bundles.bristles)
         places.emplace_back(hair.bundles, brush::place_of(hair.bundles, b), hair.branches);
@@ -412,7 +412,7 @@ HairMarks draw_hair_marks(const TouchingHair& hair, const HairInk& ink, const Pi
         if (part.begin >= part.end) return;
         double widest = 0;
         for (std::size_t i = part.begin; i < part.end; ++i) widest = std::max(widest, part.trail.cuts[i].a);
-        std::vector<LowerBristle> lower = find_lower_bristles(part, hair.bundles, places);
+        Recycled<LowerBristle> lower = find_lower_bristles(part, hair.bundles, places);
         StrandPen pen(part, picture);
         for (const Strand& s : strands_of(lower, hair.bundles, ink, widest, LyingHair(part, ink))) pen.draw(s);
     };
@@ -421,7 +421,7 @@ HairMarks draw_hair_marks(const TouchingHair& hair, const HairInk& ink, const Pi
         draw({trail, 0, std::min(trail.trunk + 1, trail.cuts.size())});
         draw({trail, trail.trunk, trail.cuts.size()});
     }
-    std::vector<std::uint8_t> level;
+    Recycled<std::uint8_t> level;
     picture.bands.copy_rows(level);
     std::uint64_t sum = 0;
     for (std::size_t row = 0; row < f.coverage.size(); row += static_cast<std::size_t>(f.width))

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "brush/tuft/bundles.h"
+#include "core/system/recycled.h"
 #include "footprint/outline/cuts.h"
 #include "footprint/outline/footprint.h"
 #include "footprint/outline/rough_edge.h"
@@ -17,8 +17,8 @@ namespace tuft::footprint {
 /// first. They sum to one and are proportional to the length of hair of a cell on the surface. A bundle touches
 /// where it is in the lower half of its section and the section's underside at its position is at or below the
 /// surface. Where no bundle touches, the cells nearest the tip share. `ends` is that of brush::hair_cells.
-std::vector<float> contact_cells(std::span<const Trail> trails, const brush::Bundles& bundles, int branches,
-                                 std::span<const double> ends);
+Recycled<float> contact_cells(std::span<const Trail> trails, const brush::Bundles& bundles, int branches,
+                              std::span<const double> ends);
 
 /// A part of a bundle that touches the surface.
 struct HairContactPoint {
@@ -29,8 +29,8 @@ struct HairContactPoint {
 };
 
 /// Returns the parts that `contact_cells` counts, one by one. Cost: about 10 µs.
-std::vector<HairContactPoint> hair_contact_points(std::span<const Trail> trails, const brush::Bundles& bundles,
-                                                  int branches);
+Recycled<HairContactPoint> hair_contact_points(std::span<const Trail> trails, const brush::Bundles& bundles,
+                                               int branches);
 
 /// Hair that touches the surface.
 struct TouchingHair {

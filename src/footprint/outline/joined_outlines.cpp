@@ -13,8 +13,8 @@ namespace {
 /// Sections of two or three neighbouring trails at equal parts of their hair, tip side first: the skin between spines
 /// goes from tip to tip.
 struct Joint {
-    std::vector<std::vector<Cut>> side;  ///< [trails][sections]
-    std::vector<const Trail*> trail;     ///< [trails]
+    Recycled<Recycled<Cut>> side;  ///< [trails][sections]
+    Recycled<const Trail*> trail;  ///< [trails]
 };
 
 constexpr double kPast = 0.02;  ///< of the hair, that one of two joined ends may touch further
@@ -58,10 +58,10 @@ const TrailOpening* opening_between(const Trail& a, const Trail& b) {
 }
 
 /// The stretches over which all of the given neighbouring trails are joined, of where all touch.
-std::vector<Joint> joints_of(std::span<const Trail* const> trails) {
+Recycled<Joint> joints_of(std::span<const Trail* const> trails) {
     constexpr int kJointSamples = 24;
-    std::vector<Joint> out;
-    std::vector<Walk> walks;
+    Recycled<Joint> out;
+    Recycled<Walk> walks;
     double tip = 1e9, root = -1e9;
     for (const Trail* t : trails) {
         walks.push_back({t});
@@ -78,7 +78,7 @@ std::vector<Joint> joints_of(std::span<const Trail* const> trails) {
             for (const Trail* b : trails)
                 if (const TrailOpening* o = opening_between(*a.trail, *b)) widest = std::max(widest, a.opening(u, *o));
         if (widest <= 0) {
-            if (open) out.push_back({std::vector<std::vector<Cut>>(trails.size()), {trails.begin(), trails.end()}});
+            if (open) out.push_back({Recycled<Recycled<Cut>>(trails.size()), {trails.begin(), trails.end()}});
             for (std::size_t k = 0; k < walks.size(); ++k) out.back().side[k].push_back(walks[k].cut(u));
         }
         open = widest > 0;
@@ -105,7 +105,7 @@ Outline outline_of(const Joint& joint, int points) {
     const std::size_t n = joint.side.front().size(), sides = joint.side.size();
     const bool discs = !joint.trail.front()->strip;  // any of them may reach furthest
     Vec2 forward{0}, middle{0};
-    for (const std::vector<Cut>& side : joint.side) {
+    for (const Recycled<Cut>& side : joint.side) {
         forward += forward_direction(side);
         middle += side[n / 2].centre;
     }
@@ -155,8 +155,8 @@ const Trail* same_branch(const Trail& trail, std::span<const Trail> before) {
 }
 
 /// Sections from end to end of a trail, evenly in their number.
-std::vector<Cut> sections_of(const Trail& trail) {
-    std::vector<Cut> out;
+Recycled<Cut> sections_of(const Trail& trail) {
+    Recycled<Cut> out;
     const std::size_t last = trail.cuts.size() - 1;
     for (int i = 0; i < kSweptSamples; ++i)
         out.push_back(trail.cuts[last * static_cast<std::size_t>(i) / (kSweptSamples - 1)]);
@@ -198,7 +198,7 @@ Vec2 middle_of_ring(std::span<const Trail> trails) {
 
 /// Adds what lies midway between two outer spines of a ring: as far out as they are, where their chord is nearer.
 void add_arc(Joint& joint, const Vec2& middle) {
-    std::vector<Cut> arc;
+    Recycled<Cut> arc;
     for (std::size_t i = 0; i < joint.side[0].size(); ++i) {
         const Cut &p = joint.side[0][i], &q = joint.side[1][i];
         Cut cut = cut_between(p, q, 0.5);
@@ -213,8 +213,8 @@ void add_arc(Joint& joint, const Vec2& middle) {
 
 }  // namespace
 
-std::vector<Trail> leapt_trails(std::span<const Trail> trails, const Frame& frame, std::span<const Trail> before,
-                                const Frame& frame_before, const Vec2& hand) {
+Recycled<Trail> leapt_trails(std::span<const Trail> trails, const Frame& frame, std::span<const Trail> before,
+                             const Frame& frame_before, const Vec2& hand) {
     bool leapt = false;
     for (const Trail& trail : trails) {
         const Trail* was = same_branch(trail, before);
@@ -229,13 +229,13 @@ std::vector<Trail> leapt_trails(std::span<const Trail> trails, const Frame& fram
         leapt = leapt || (way > 1e-9 && way > kLeap * extent_along(trail, most / way));
     }
     if (!leapt) return {};
-    std::vector<Trail> out(before.begin(), before.end());
+    Recycled<Trail> out(before.begin(), before.end());
     change_frame(out, frame_before, frame);
     return out;
 }
 
-std::vector<Trail> trails_passed(std::span<const Trail> trails, std::span<const Trail> before) {
-    std::vector<const Trail*> was;
+Recycled<Trail> trails_passed(std::span<const Trail> trails, std::span<const Trail> before) {
+    Recycled<const Trail*> was;
     double steps = 0;  // of a leap each
     for (const Trail& trail : trails) {
         was.push_back(same_branch(trail, before));
@@ -246,7 +246,7 @@ std::vector<Trail> trails_passed(std::span<const Trail> trails, std::span<const 
         const double way = glm::length(most);
         if (way > 1e-9) steps = std::max(steps, way / (kLeap * extent_along(trail, most / way)));
     }
-    std::vector<Trail> out;
+    Recycled<Trail> out;
     const int poses = static_cast<int>(std::min(std::ceil(steps), kMostPassed));
     for (int pose = 1; pose < poses; ++pose)
         for (std::size_t k = 0; k < trails.size(); ++k) {
@@ -275,7 +275,7 @@ class Union {
         if (numbers.size() < 3) return;
         Joint heel;
         for (const std::size_t k : numbers) {
-            const std::vector<Cut>& cuts = trails_[k].cuts;
+            const Recycled<Cut>& cuts = trails_[k].cuts;
             heel.side.push_back({cuts[(cuts.size() - 1) / 2], cuts.back()});
             heel.trail.push_back(&trails_[k]);
         }
@@ -284,9 +284,9 @@ class Union {
 
     /// Returns true where ink joins them somewhere.
     bool join(std::initializer_list<std::size_t> numbers) {
-        std::vector<const Trail*> now, was;
+        Recycled<const Trail*> now, was;
         for (const std::size_t k : numbers) now.push_back(&trails_[k]);
-        std::vector<Joint> joints = joints_of(now);
+        Recycled<Joint> joints = joints_of(now);
         for (Joint& joint : joints) {
             const bool arc = now.size() == 2 && !now[0]->strip && now[0]->branch > 0 && now[1]->branch > 0;
             if (arc) add_arc(joint, middle_);
@@ -308,7 +308,7 @@ class Union {
         }
     }
 
-    std::vector<Outline> take() { return std::move(out_); }
+    Recycled<Outline> take() { return std::move(out_); }
 
   private:
     void keep(Outline outline) {
@@ -317,15 +317,15 @@ class Union {
     std::span<const Trail> trails_, before_;
     int points_;
     Vec2 middle_;
-    std::vector<Outline> out_;
+    Recycled<Outline> out_;
 };
 
 }  // namespace
 
-std::vector<Outline> outlines_of(std::span<const Trail> trails, int points, std::span<const Trail> before) {
+Recycled<Outline> outlines_of(std::span<const Trail> trails, int points, std::span<const Trail> before) {
     Union all(trails, points, before);
     all.add_alone();
-    std::vector<std::size_t> row;  // of spines joined so far, each to the next
+    Recycled<std::size_t> row;  // of spines joined so far, each to the next
     for (std::size_t a = 0; a < trails.size(); ++a)
         for (std::size_t b = 0; b < trails.size(); ++b) {
             if (!opening_between(trails[a], trails[b])) continue;

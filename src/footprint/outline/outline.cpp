@@ -26,7 +26,7 @@ const std::array<Vec2, kDirections>& directions() {
 
 /// Adds the corners of the shadow of the part of a section that lies below the surface, in order:
 /// first and last are its cut points Q±, unless all of it lies below.
-void add_shadow(const Cut& cut, std::vector<Vec2>& corners) {
+void add_shadow(const Cut& cut, Recycled<Vec2>& corners) {
     const double p = cut.a * cut.e.z, q = cut.b * cut.m.z, height = std::sqrt(p * p + q * q);
     const double level = height > 0 ? std::clamp(-cut.z / height, -1.0, 1.0) : (cut.z <= 0 ? 1 : -1);
     const double cos_f = height > 0 ? p / height : 1, sin_f = height > 0 ? q / height : 0;
@@ -52,7 +52,7 @@ void add_shadow(const Cut& cut, std::vector<Vec2>& corners) {
 }
 
 /// The same of a strip: its corners at the scale at which it meets the surface when the ellipse does, cut by it.
-void add_strip_shadow(const Cut& cut, std::span<const Vec2> strip, std::vector<Vec2>& corners) {
+void add_strip_shadow(const Cut& cut, std::span<const Vec2> strip, Recycled<Vec2>& corners) {
     const Vec3 e = cut.a * cut.e, m = cut.b * cut.m;
     const Vec3 broad = cut.turn.x * e + cut.turn.y * m, thick = cut.turn.x * m - cut.turn.y * e;
     double reach = 0;
@@ -72,12 +72,12 @@ void add_strip_shadow(const Cut& cut, std::span<const Vec2> strip, std::vector<V
 
 /// Solves (c[k-1] + 4 c[k] + c[k+1]) / 6 = p[k], cyclic, by elimination with one bordering
 /// unknown (the last).
-std::vector<Vec2> spline_control(const std::vector<Vec2>& p) {
+Recycled<Vec2> spline_control(const Recycled<Vec2>& p) {
     const int n = static_cast<int>(p.size());
     if (n < 3) return p;
     // Rows 0 … n−2 with c[n−1] moved to the right: c = y − c[n−1] w.
-    std::vector<double> diagonal(n - 1, 4), w(n - 1, 0);
-    std::vector<Vec2> y(p.begin(), p.end() - 1);
+    Recycled<double> diagonal(n - 1, 4), w(n - 1, 0);
+    Recycled<Vec2> y(p.begin(), p.end() - 1);
     for (Vec2& v : y) v *= 6;
     w[0] += 1;
     w[n - 2] += 1;
@@ -95,7 +95,7 @@ std::vector<Vec2> spline_control(const std::vector<Vec2>& p) {
         w[k] /= diagonal[k];
         y[k] /= diagonal[k];
     }
-    std::vector<Vec2> c(n);
+    Recycled<Vec2> c(n);
     c[n - 1] = (6.0 * p[n - 1] - y[0] - y[n - 2]) / (4 - w[0] - w[n - 2]);
     for (int k = 0; k < n - 1; ++k) c[k] = y[k] - w[k] * c[n - 1];
     return c;
@@ -115,7 +115,7 @@ std::span<const Vec2> strip_of(const Trail& trail) {
     return trail.corners.empty() ? std::span<const Vec2>(kRectangle) : std::span<const Vec2>(trail.corners);
 }
 
-Vec2 forward_direction(const std::vector<Cut>& cuts) {
+Vec2 forward_direction(const Recycled<Cut>& cuts) {
     const Vec2 run = cuts.front().centre - cuts.back().centre;
     Vec2 side{0};
     double width = 0;
@@ -166,7 +166,7 @@ Outline closed_outline(const Envelope& envelope, const PatchFrame& patch, const 
         outline.left.push_back(patch.to_stamp(envelope.top(j)));
         outline.right.push_back(patch.to_stamp(envelope.bottom(j)));
     }
-    std::vector<Vec2> closed;
+    Recycled<Vec2> closed;
     closed.reserve(2 * outline.left.size() + 2);
     closed.push_back(outline.tip);
     closed.insert(closed.end(), outline.left.begin(), outline.left.end());
@@ -177,7 +177,7 @@ Outline closed_outline(const Envelope& envelope, const PatchFrame& patch, const 
 }
 
 Outline outline_of(const Trail& trail, int points) {
-    const std::vector<Cut>& cuts = trail.cuts;
+    const Recycled<Cut>& cuts = trail.cuts;
     points = std::max(points, 4);
     const PatchFrame patch{cuts[cuts.size() / 2].centre, forward_direction(cuts)};
     Loops loops;
@@ -193,14 +193,14 @@ Outline outline_of(const Trail& trail, int points) {
     return closed_outline(envelope, patch, {front, rear}, points, trail.strip);
 }
 
-std::vector<Outline> outlines_of(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
-                                 const OutlineOptions& options) {
+Recycled<Outline> outlines_of(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
+                              const OutlineOptions& options) {
     return outlines_of(find_trails(tuft, frame, planes, 1, options.film), options.points);
 }
 
-std::vector<Vec2> curve_points(const Outline& outline, int per_span) {
+Recycled<Vec2> curve_points(const Outline& outline, int per_span) {
     const std::size_t n = outline.control.size();
-    std::vector<Vec2> points;
+    Recycled<Vec2> points;
     if (n < 3) return points;
     points.reserve(n * static_cast<std::size_t>(per_span));
     for (std::size_t k = 0; k < n; ++k) {

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "brush/state/tuft_state.h"
+#include "core/system/recycled.h"
 #include "footprint/outline/footprint.h"
 
 /// \file
@@ -15,13 +15,13 @@ namespace tuft::footprint {
 /// one side, the tail point and the cut points of the other side (variable-stiffness
 /// brush paper, section 4.1).
 struct Outline {
-    Vec2 tip{0};              ///< T: front end
-    Vec2 tail{0};             ///< H: rear end
-    std::vector<Vec2> left;   ///< cut points from tip to tail
-    std::vector<Vec2> right;  ///< their mirror images where the tuft is symmetric
+    Vec2 tip{0};           ///< T: front end
+    Vec2 tail{0};          ///< H: rear end
+    Recycled<Vec2> left;   ///< cut points from tip to tail
+    Recycled<Vec2> right;  ///< their mirror images where the tuft is symmetric
     /// Of strips the points themselves. Of the spline, cyclic: point k of the curve at knot k is (control[k-1] + 4
     /// control[k] + control[k+1]) / 6.
-    std::vector<Vec2> control;
+    Recycled<Vec2> control;
 };
 
 /// Options of `outlines_of` a tuft.
@@ -31,11 +31,11 @@ struct OutlineOptions {
 };
 
 /// Local contact planes of the nodes of one branch, tip first; see brush::ContactPlane.
-using NodePlanes = std::vector<brush::ContactPlane>;
+using NodePlanes = Recycled<brush::ContactPlane>;
 
 /// Assigns the planes of `brush::predicted_nodes` (whole spine, then sub-spines) to the branches of the tuft. Empty
 /// when their number fits no such tuft.
-std::vector<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<const brush::ContactPlane> planes);
+Recycled<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<const brush::ContactPlane> planes);
 
 /// Returns one outline for each touching part of each branch. Section i at height z with semi-axes a along e, b
 /// along m is cut where |z| ≤ A = √(a² (e·n)² + b² (m·n)²), at ω± = atan2(b m·n, a e·n) ± acos(−z/A). Upright, the
@@ -43,8 +43,8 @@ std::vector<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<cons
 /// continuous while sections enter and leave the surface. Parts below the surface count with their projection onto
 /// it. With `planes` (one entry per branch) each node is cut by its own plane and its cut points are placed on the
 /// surface by the log map. Without, the plane is that of `frame`.
-std::vector<Outline> outlines_of(const brush::TuftState& tuft, const Frame& frame,
-                                 std::span<const NodePlanes> planes = {}, const OutlineOptions& options = {});
+Recycled<Outline> outlines_of(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes = {},
+                              const OutlineOptions& options = {});
 
 /// Four control points in a row, which a span of the curve depends on.
 struct CurveSpan {
@@ -52,7 +52,7 @@ struct CurveSpan {
 
     /// Span k of the closed curve, from near control point k to near k + 1. Precondition: there are control points.
     CurveSpan(const Outline& outline, std::size_t k) {
-        const std::vector<Vec2>& c = outline.control;
+        const Recycled<Vec2>& c = outline.control;
         const std::size_t n = c.size();
         c0 = c[(k + n - 1) % n], c1 = c[k], c2 = c[(k + 1) % n], c3 = c[(k + 2) % n];
     }
@@ -66,7 +66,7 @@ struct CurveSpan {
 };
 
 /// Returns points of the curve, `per_span` for each cut point.
-std::vector<Vec2> curve_points(const Outline& outline, int per_span = 4);
+Recycled<Vec2> curve_points(const Outline& outline, int per_span = 4);
 
 /// Returns the union of the outlines as a picture with exact area coverage; empty when there is none. `cell` is in
 /// metres, about a texel or finer. It is doubled until the picture has at most 4096 cells a side, when a texel is

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 #include <span>
-#include <vector>
 
+#include "core/system/recycled.h"
 #include "footprint/outline/cuts.h"
 
 /// \file
@@ -14,8 +14,8 @@ namespace tuft::footprint {
 
 /// Shadows of sections on the surface, one loop of corners each.
 struct Loops {
-    std::vector<Vec2> corners;
-    std::vector<std::size_t> first{0};  ///< corner of each loop, and the end
+    Recycled<Vec2> corners;
+    Recycled<std::size_t> first{0};  ///< corner of each loop, and the end
 
     /// `strip`: corners of the hair's sections; empty: ellipses.
     void add(std::span<const Cut> cuts, std::span<const Vec2> strip);
@@ -30,7 +30,7 @@ struct PatchFrame {
     Vec2 middle{0}, forward{1, 0};
 
     Vec2 left() const { return {-forward.y, forward.x}; }
-    void to_patch(std::vector<Vec2>& points) const {
+    void to_patch(Recycled<Vec2>& points) const {
         for (Vec2& q : points) q = {glm::dot(q - middle, forward), glm::dot(q - middle, left())};
     }
     Vec2 to_stamp(const Vec2& q) const { return middle + q.x * forward + q.y * left(); }
@@ -63,7 +63,7 @@ class Envelope {
 
   private:
     static constexpr double kFar = 1e9;
-    std::vector<double> x_, top_, bottom_;
+    Recycled<double> x_, top_, bottom_;
     int at_ = 0;
 };
 
@@ -87,7 +87,7 @@ std::span<const Vec2> strip_of(const Trail& trail);
 
 /// Direction of the footprint from tail to tip: from end to end of the touching spine; for
 /// one that stands, the trace of its bending plane.
-Vec2 forward_direction(const std::vector<Cut>& cuts);
+Vec2 forward_direction(const Recycled<Cut>& cuts);
 
 /// Adds the loops of one trail, each with the skin to the next.
 void add_loops(const Loops& loops, std::size_t begin, std::size_t end, Envelope& envelope);

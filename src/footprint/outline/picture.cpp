@@ -147,7 +147,7 @@ void pack_picture(const Footprint& footprint, std::vector<std::uint16_t>& pairs)
     pack_rows(footprint.coverage.data(), footprint.coverage.data() + row, pairs.data(), pairs.size());
 }
 
-void transpose(std::span<const std::uint8_t> cells, int width, int height, std::vector<std::uint8_t>& turned) {
+void transpose(std::span<const std::uint8_t> cells, int width, int height, Recycled<std::uint8_t>& turned) {
     constexpr int kSide = 8;
     turned.resize(static_cast<std::size_t>(width) * height);
     const auto in = [&](int x, int y) { return cells.data() + static_cast<std::ptrdiff_t>(y) * width + x; };

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/system/recycled.h"
 #include "footprint/outline/footprint.h"
 
 /// \file
@@ -20,7 +21,7 @@ Isa best_isa();  ///< of this machine
 void pack_picture(const Footprint& footprint, std::vector<std::uint16_t>& pairs);
 
 /// Transposes the picture [width * height] to [height * width]. Cost: 0.1 ns a cell.
-void transpose(std::span<const std::uint8_t> cells, int width, int height, std::vector<std::uint8_t>& turned);
+void transpose(std::span<const std::uint8_t> cells, int width, int height, Recycled<std::uint8_t>& turned);
 
 enum class Cover : std::uint8_t { mixed, empty, full };
 

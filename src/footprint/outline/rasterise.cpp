@@ -21,8 +21,8 @@ struct BorderCell {
 
 /// Collects the border cells of outlines; costs grow with the border, not with the area.
 struct Border {
-    int height;                     ///< rows
-    std::vector<BorderCell> cells;  ///< as drawn
+    int height;                  ///< rows
+    Recycled<BorderCell> cells;  ///< as drawn
 
     /// Part of an edge inside one cell.
     void add_in_cell(int i, int j, double x0, double x1, double dy) {
@@ -71,11 +71,11 @@ struct Border {
 
     /// Coverage of all cells; outlines of one sense cover positively, all together at most once.
     void resolve(int width, std::uint8_t* out) const {
-        std::vector<std::uint32_t> start(static_cast<std::size_t>(height) + 1, 0);
+        Recycled<std::uint32_t> start(static_cast<std::size_t>(height) + 1, 0);
         for (const BorderCell& c : cells) ++start[c.row + 1];
         for (int j = 0; j < height; ++j) start[j + 1] += start[j];
-        std::vector<BorderCell> sorted(cells.size());
-        std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
+        Recycled<BorderCell> sorted(cells.size());
+        Recycled<std::uint32_t> next(start.begin(), start.end() - 1);
         for (const BorderCell& c : cells) sorted[next[c.row]++] = c;
         for (int j = 0; j < height; ++j) {
             BorderCell *first = sorted.data() + start[j], *last = sorted.data() + start[j + 1];
@@ -178,7 +178,7 @@ Footprint rasterise_polygons(std::span<const Polygon> polygons, const Frame& fra
 }
 
 Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::uint32_t triangle, double cell) {
-    std::vector<Polygon> curves;
+    Recycled<Polygon> curves;
     curves.reserve(outlines.size());
     for (const Outline& o : outlines) curves.push_back(curve_points(o));
     return rasterise_polygons(curves, frame, triangle, cell);

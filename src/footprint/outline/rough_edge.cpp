@@ -156,7 +156,7 @@ Footprint rasterise(std::span<const Outline> outlines, const PicturePlane& plane
     Displacement displacement(plane, edge);
     if (displacement.none()) return rasterise(outlines, plane.frame, plane.triangle, plane.cell);
     const Vec2 steps = displacement.steps();
-    std::vector<Polygon> curves;
+    Recycled<Polygon> curves;
     curves.reserve(outlines.size());
     for (const Outline& outline : outlines) {
         Polygon curve = points_of(outline, edge.hair.direction, steps);

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "core/ease.h"
 #include "footprint/outline/cuts.h"
@@ -45,8 +44,8 @@ void spread_section(Cut& cut, const Spread& spread) {
 
 }  // namespace
 
-void fill_rows(std::vector<Trail>& trails) {
-    std::vector<std::vector<Spread>> spread;
+void fill_rows(Recycled<Trail>& trails) {
+    Recycled<Recycled<Spread>> spread;
     for (const Trail& trail : trails) spread.emplace_back(trail.cuts.size());
     for (std::size_t k = 0; k < trails.size(); ++k)
         for (std::size_t l = 0; l < trails.size(); ++l) {

@@ -47,8 +47,8 @@ class Places {
     const brush::CarriedShape& carried_;
     const brush::TuftShape& shape_;
     const Frame& frame_;
-    std::vector<char> known_;
-    std::vector<Vec2> place_;
+    Recycled<char> known_;
+    Recycled<Vec2> place_;
 };
 
 double signed_area(const Polygon& polygon) {
@@ -76,12 +76,12 @@ bool contains(const Polygon& polygon, const Vec2& p) {
 /// A polygon, and how far ink stands out at each of its points, metres.
 struct Loop {
     Polygon polygon;
-    std::vector<double> film;
+    Recycled<double> film;
 };
 
 /// Turns each loop by the number of others that it lies in.
-void turn_even_odd(std::vector<Loop>& loops) {
-    std::vector<Bounds> bounds(loops.size());
+void turn_even_odd(Recycled<Loop>& loops) {
+    Recycled<Bounds> bounds(loops.size());
     for (std::size_t k = 0; k < loops.size(); ++k)
         for (const Vec2& p : loops[k].polygon) bounds[k] = {glm::min(bounds[k].lo, p), glm::max(bounds[k].hi, p)};
     for (std::size_t k = 0; k < loops.size(); ++k) {
@@ -117,9 +117,9 @@ std::uint64_t edge_of(std::uint32_t a, std::uint32_t b) {
 
 }  // namespace
 
-std::vector<Polygon> section_polygons(const brush::CarriedShape& carried, const brush::TuftShape& shape,
-                                      const Frame& frame, const ShapeOptions& options) {
-    std::vector<Polygon> out;
+Recycled<Polygon> section_polygons(const brush::CarriedShape& carried, const brush::TuftShape& shape,
+                                   const Frame& frame, const ShapeOptions& options) {
+    Recycled<Polygon> out;
     if (shape.height.empty()) return out;
     Places places(carried, shape, frame);
     const auto level = [&](std::uint32_t v) {
@@ -134,7 +134,7 @@ std::vector<Polygon> section_polygons(const brush::CarriedShape& carried, const 
         bool visited = false;
     };
     std::unordered_map<std::uint64_t, Crossing> crossings;
-    std::vector<std::uint64_t> order;  // a loop begins at the first of its crossings in the order of the triangles
+    Recycled<std::uint64_t> order;  // a loop begins at the first of its crossings in the order of the triangles
     const auto crossing = [&](std::uint32_t a, std::uint32_t b) {
         if (b < a) std::swap(a, b);
         const std::uint64_t name = edge_of(a, b);
@@ -159,7 +159,7 @@ std::vector<Polygon> section_polygons(const brush::CarriedShape& carried, const 
         }
         crossings[up].next = down;
     }
-    std::vector<Loop> loops;
+    Recycled<Loop> loops;
     for (const std::uint64_t start : order) {
         Loop loop;
         for (std::uint64_t name = start; !crossings[name].visited; name = crossings[name].next) {
@@ -200,9 +200,9 @@ double need_of(std::size_t line, const LineInk& ink) {
 
 }  // namespace
 
-std::vector<Polygon> hair_polygons(const brush::CarriedShape& carried, const brush::TuftShape& shape,
-                                   const Frame& frame, double width, const LineInk& ink, const ShapeOptions& options) {
-    std::vector<Polygon> out;
+Recycled<Polygon> hair_polygons(const brush::CarriedShape& carried, const brush::TuftShape& shape, const Frame& frame,
+                                double width, const LineInk& ink, const ShapeOptions& options) {
+    Recycled<Polygon> out;
     if (shape.height.empty()) return out;
     Places places(carried, shape, frame);
     const double reach = options.film + 0.5 * width;
@@ -225,8 +225,8 @@ std::vector<Polygon> hair_polygons(const brush::CarriedShape& carried, const bru
     return out;
 }
 
-std::vector<Polygon> shape_polygons(const brush::Tuft& tuft, const brush::TuftShape& shape, const Frame& frame,
-                                    const ShapeOptions& options) {
+Recycled<Polygon> shape_polygons(const brush::Tuft& tuft, const brush::TuftShape& shape, const Frame& frame,
+                                 const ShapeOptions& options) {
     return tuft.carried->lines.empty()
                ? section_polygons(*tuft.carried, shape, frame, options)
                : hair_polygons(*tuft.carried, shape, frame, tuft.preset.hair_diameter, {}, options);
@@ -282,11 +282,11 @@ void clip_footprint(Footprint& f, const Footprint& by) {
         }
 }
 
-std::vector<HairContactPoint> shape_contact_points(const brush::CarriedShape& carried, const brush::TuftShape& shape,
-                                                   const Frame& frame, double film) {
-    std::vector<HairContactPoint> found;
+Recycled<HairContactPoint> shape_contact_points(const brush::CarriedShape& carried, const brush::TuftShape& shape,
+                                                const Frame& frame, double film) {
+    Recycled<HairContactPoint> found;
     if (shape.height.empty()) return found;
-    std::vector<std::uint32_t> touching;
+    Recycled<std::uint32_t> touching;
     for (std::uint32_t i = 0; i < shape.height.size(); ++i)
         if (shape.height[i] < film && carried.area[i] > 0) touching.push_back(i);
     const std::size_t stride = touching.size() / kMostPoints + 1;
@@ -297,10 +297,10 @@ std::vector<HairContactPoint> shape_contact_points(const brush::CarriedShape& ca
     return found;
 }
 
-std::vector<float> shape_contact_cells(std::span<const HairContactPoint> points, std::size_t bundles,
-                                       std::span<const double> ends) {
+Recycled<float> shape_contact_cells(std::span<const HairContactPoint> points, std::size_t bundles,
+                                    std::span<const double> ends) {
     const std::size_t cells = ends.size();
-    std::vector<double> sum(bundles * cells, 0);
+    Recycled<double> sum(bundles * cells, 0);
     double all = 0;
     for (const HairContactPoint& p : points) {
         const std::size_t c =
@@ -310,7 +310,7 @@ std::vector<float> shape_contact_cells(std::span<const HairContactPoint> points,
     }
     for (std::size_t k = 0; k < bundles && !(all > 0); ++k) sum[k * cells + cells - 1] = 1;
     if (!(all > 0)) all = static_cast<double>(bundles);
-    std::vector<float> parts(sum.size());
+    Recycled<float> parts(sum.size());
     for (std::size_t i = 0; i < sum.size(); ++i) parts[i] = static_cast<float>(sum[i] / all);
     return parts;
 }

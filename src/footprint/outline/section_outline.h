@@ -1,9 +1,9 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "brush/tuft/tuft.h"
+#include "core/system/recycled.h"
 #include "footprint/outline/footprint.h"
 #include "footprint/outline/hair.h"
 
@@ -18,7 +18,7 @@
 namespace tuft::footprint {
 
 /// Polygon in the stamp's (u, v), metres, counter-clockwise outside, clockwise round a hole.
-using Polygon = std::vector<Vec2>;
+using Polygon = Recycled<Vec2>;
 
 struct ShapeOptions {
     double film = 0.1e-3;  ///< metres, ink on the skin or the hair
@@ -26,8 +26,8 @@ struct ShapeOptions {
 };
 
 /// Returns the polygons of a mesh. Empty where nothing touches.
-std::vector<Polygon> section_polygons(const brush::CarriedShape& carried, const brush::TuftShape& shape,
-                                      const Frame& frame, const ShapeOptions& options = {});
+Recycled<Polygon> section_polygons(const brush::CarriedShape& carried, const brush::TuftShape& shape,
+                                   const Frame& frame, const ShapeOptions& options = {});
 
 /// Wetness and motion of single hairs, for `hair_polygons`.
 struct LineInk {
@@ -39,13 +39,12 @@ struct LineInk {
 /// Returns the stadiums of the hairs of polylines. `width` is a hair's own, metres. With w the wetness of its bundle, a
 /// hair marks while w > n, n of each hair fixed for three quarters and changing along the stroke for one; it marks
 /// width + 2 film min(1, w) wide.
-std::vector<Polygon> hair_polygons(const brush::CarriedShape& carried, const brush::TuftShape& shape,
-                                   const Frame& frame, double width, const LineInk& ink,
-                                   const ShapeOptions& options = {});
+Recycled<Polygon> hair_polygons(const brush::CarriedShape& carried, const brush::TuftShape& shape, const Frame& frame,
+                                double width, const LineInk& ink, const ShapeOptions& options = {});
 
 /// Returns the polygons of a tuft's shape, mesh or hair, in full ink and without pores.
-std::vector<Polygon> shape_polygons(const brush::Tuft& tuft, const brush::TuftShape& shape, const Frame& frame,
-                                    const ShapeOptions& options = {});
+Recycled<Polygon> shape_polygons(const brush::Tuft& tuft, const brush::TuftShape& shape, const Frame& frame,
+                                 const ShapeOptions& options = {});
 
 /// Returns the radius of a pore's mouth where the skin is pressed by `depth`, metres:
 ///
@@ -68,11 +67,11 @@ Footprint rasterise_polygons(std::span<const Polygon> polygons, const Frame& fra
 void clip_footprint(Footprint& footprint, const Footprint& by);
 
 /// Returns which parts of which bundles touch, as `hair_contact_points` does; at most about 400.
-std::vector<HairContactPoint> shape_contact_points(const brush::CarriedShape& carried, const brush::TuftShape& shape,
-                                                   const Frame& frame, double film);
+Recycled<HairContactPoint> shape_contact_points(const brush::CarriedShape& carried, const brush::TuftShape& shape,
+                                                const Frame& frame, double film);
 
 /// Returns the contact fractions of all cells, as `contact_cells` does.
-std::vector<float> shape_contact_cells(std::span<const HairContactPoint> points, std::size_t bundles,
-                                       std::span<const double> ends);
+Recycled<float> shape_contact_cells(std::span<const HairContactPoint> points, std::size_t bundles,
+                                    std::span<const double> ends);
 
 }  // namespace tuft::footprint

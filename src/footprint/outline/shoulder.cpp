@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace tuft::footprint {
 namespace {
@@ -44,21 +43,21 @@ class Envelope {
         return ((line_[q] + a * a) - (line_[v] + b * b)) / (2 * (a - b));
     }
 
-    std::vector<float> line_;
-    std::vector<int> from_;
-    std::vector<float> border_;
+    Recycled<float> line_;
+    Recycled<int> from_;
+    Recycled<float> border_;
 };
 
 /// Distance of each block of `part` × `part` cells from the edge, in blocks, with a frame of empty
 /// ones: block (i, j) at (j + 1) * width + i + 1.
 struct Blocks {
     int width = 0, height = 0;
-    std::vector<float> far;
+    Recycled<float> far;
 
     Blocks(const Footprint& f, int part)
         : width((f.width + part - 1) / part + 2), height((f.height + part - 1) / part + 2) {
         far.assign(std::size_t(width) * height, 0);
-        std::vector<std::uint32_t> sum(far.size(), 0);
+        Recycled<std::uint32_t> sum(far.size(), 0);
         for (int y = 0; y < f.height; ++y) {
             std::uint32_t* to = sum.data() + std::size_t(y / part + 1) * width + 1;
             const std::uint8_t* from = f.coverage.data() + std::size_t(y) * f.width;

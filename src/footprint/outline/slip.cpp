@@ -14,7 +14,7 @@ struct Place {
 };
 
 Place place_at(const Trail& trail, double along) {
-    const std::vector<double>& a = trail.along;  // falls
+    const Recycled<double>& a = trail.along;  // falls
     const auto after = std::lower_bound(a.begin(), a.end(), along, std::greater<>());
     const std::size_t j = std::clamp<std::size_t>(static_cast<std::size_t>(after - a.begin()), 1, a.size() - 1),
                       i = j - 1;
@@ -38,7 +38,7 @@ const Trail* same_hair(const Trail& trail, std::span<const Trail> before) {
 
 }  // namespace
 
-void change_frame(std::vector<Trail>& trails, const Frame& from, const Frame& to) {
+void change_frame(Recycled<Trail>& trails, const Frame& from, const Frame& to) {
     const auto to_other = [&](const Vec3& v) {
         const Vec3 world = v.x * from.t + v.y * from.b + v.z * from.n;
         return Vec3{glm::dot(world, to.t), glm::dot(world, to.b), glm::dot(world, to.n)};

@@ -3,6 +3,7 @@
 #include <array>
 #include <span>
 
+#include "core/system/recycled.h"
 #include "footprint/outline/cuts.h"
 
 /// \file
@@ -10,7 +11,7 @@
 namespace tuft::footprint {
 
 /// Transforms trails to a nearby frame, as if both frames were in one plane.
-void change_frame(std::vector<Trail>& trails, const Frame& from, const Frame& to);
+void change_frame(Recycled<Trail>& trails, const Frame& from, const Frame& to);
 
 /// Length of touching hair projected across its own motion: ∫ |sin ψ| ds in metres, by position in the section. ψ
 /// is the angle between the hair and its displacement.

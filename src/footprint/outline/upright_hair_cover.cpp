@@ -19,10 +19,10 @@ double half_width(const Cut& cut) {
 
 }  // namespace
 
-void cover_upright_hair(std::vector<Trail>& trails, const brush::UprightHair& foot, const Frame& frame, double film) {
+void cover_upright_hair(Recycled<Trail>& trails, const brush::UprightHair& foot, const Frame& frame, double film) {
     if (trails.empty() || !(foot.share > 0)) return;
     Trail& trail = trails.back();
-    std::vector<Cut>& cuts = trail.cuts;
+    Recycled<Cut>& cuts = trail.cuts;
     if (cuts.size() < 2 || trail.trunk < cuts.size()) return;
     std::size_t widest = 0;
     double half = 0;

@@ -7,6 +7,7 @@
 
 #include "atlas/texels/cluster_graph.h"
 #include "core/geometry/sparse_numbering.h"
+#include "core/system/recycled.h"
 #include "footprint/outline/footprint.h"
 #include "footprint/outline/picture.h"
 #include "mesh/query/exact_geodesics.h"
@@ -114,7 +115,7 @@ struct SweepScratch {
     };
     std::vector<SweptLines> swept_lines;    ///< by line of the result
     std::vector<const std::uint8_t*> rows;  ///< by line: its first cell in the strip
-    std::vector<std::uint8_t> transposed;   ///< the picture by columns
+    Recycled<std::uint8_t> transposed;      ///< the picture by columns
     std::vector<std::uint8_t> strip;        ///< cells of lines that leave the picture; rounded results
     std::vector<float> parts;               ///< 0–1, by line: position of the strip between two cells
     std::vector<float> lines;               ///< values of the strip, with empty lines before and after

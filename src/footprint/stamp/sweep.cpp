@@ -269,14 +269,14 @@ void sweep(const Footprint& footprint, const Vec2& shift, StampJobs& jobs, Sweep
 
 void sweep_over(const Footprint& footprint, const Vec2& shift, float part, StampJobs& jobs, SweepScratch& scratch) {
     const Sheared sheared(footprint, shift, scratch);
-    std::vector<std::uint8_t> mean;
+    Recycled<std::uint8_t> mean;
     float gain = 1;
     if (part < 1) {
         gain = take_mean(sheared, scratch);
         mean = scratch.swept.coverage;
     }
     take_maximum(sheared, scratch);
-    std::vector<std::uint8_t>& swept = scratch.swept.coverage;
+    Recycled<std::uint8_t>& swept = scratch.swept.coverage;
     if (part < 1) weigh_maximum(mean.data(), gain, part, swept.data(), static_cast<int>(swept.size()));
     jobs.gain = 1;
     sheared.store(scratch.swept, jobs);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/geometry/types.h"
+#include "core/system/recycled.h"
 #include "ink/exchange/deposit.h"
 
 /// \file
@@ -72,7 +73,7 @@ void compress(Reservoir& tuft, double part);
 double excess(const Reservoir& tuft);
 
 /// Contact fractions of the cells, [bundles * cells], sum 1; empty: all alike.
-using ContactCells = std::vector<float>;
+using ContactCells = Recycled<float>;
 
 /// Returns an empty reservoir of `millilitres`. Throws `Error` for an invalid layout.
 Reservoir make_reservoir(double millilitres, ReservoirLayout layout = {});

@@ -112,7 +112,7 @@ void draw_shape(BrushCanvas& canvas, const TuftShape& shape, const BrushView& vi
 void draw_shape_patch(BrushCanvas& canvas, const Tuft& tuft, const TuftShape& shape, const BrushView& view, double y) {
     const CarriedShape& carried = *tuft.carried;
     const Frame sheet;
-    const std::vector<footprint::Polygon> polygons = footprint::shape_polygons(tuft, shape, sheet);
+    const Recycled<footprint::Polygon> polygons = footprint::shape_polygons(tuft, shape, sheet);
     // A cell a pixel.
     footprint::Footprint f = footprint::rasterise_polygons(polygons, sheet, 0, 1 / view.scale);
     if (f.empty()) return;

@@ -22,7 +22,7 @@ constexpr int kBetween = 5;  ///< sections drawn between two nodes
 
 /// A branch drawn from its tip to the ferrule, also where it shares the trunk.
 struct Strand {
-    std::vector<Section> sections;
+    Recycled<Section> sections;
     std::size_t trunk = 0;  ///< from here on the whole tuft
 };
 
@@ -30,10 +30,10 @@ struct Strand {
 std::vector<Strand> strands_of(const TuftState& state, const TuftAppearance& appearance) {
     std::vector<Strand> out;
     const std::size_t count = state.branches.size(), middle = count / 2;
-    const std::vector<Section>& trunk_branch = state.branches[middle].sections;
+    const Recycled<Section>& trunk_branch = state.branches[middle].sections;
     for (const Branch& branch : state.branches) {
         Strand strand;
-        std::vector<Section> all = branch.sections;
+        Recycled<Section> all = branch.sections;
         std::size_t trunk = 0;
         if (state.wide) {
             trunk = all.size();  // every hair keeps to its spine
@@ -157,7 +157,7 @@ void draw_tuft_hair(BrushCanvas& canvas, const Tuft& tuft, const TuftState& stat
     for (const std::size_t h : order) {
         const Placed& p = placed[h];
         const auto k = static_cast<std::size_t>(p.part.branch);
-        const std::vector<Section>& fine = strands[k].sections;
+        const Recycled<Section>& fine = strands[k].sections;
         const double readiness = bristles[h].readiness, n = static_cast<double>(fine.size());
         // Hairs end at unequal lengths; water draws all of them to the point.
         const double short_by = appearance.dry ? 0.16 * readiness : 0.3 * readiness * readiness * glm::length(p.whole);
@@ -314,9 +314,9 @@ Section between(const Section& p, const Section& q, double f) {
 
 /// Those of the sections that meet the sheet, and more up to where the tuft only just does: there
 /// the patch is round, as wide as the square root of the distance from its end.
-std::vector<Section> touching(const std::vector<Section>& sections) {
+Recycled<Section> touching(const Recycled<Section>& sections) {
     constexpr int kRound = 12;
-    std::vector<Section> out;
+    Recycled<Section> out;
     const auto add_end = [&](const Section& in, const Section& off, bool towards) {
         double meets = 0, misses = 1;
         for (int i = 0; i < 30; ++i) {

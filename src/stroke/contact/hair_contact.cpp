@@ -61,9 +61,9 @@ HairContact::Wetness HairContact::bundle_wetness(TuftInHand& tuft, const MotionT
     const ink::Reservoir& reservoir = tuft.brush.reservoir;
     brush::Bundles& bundles = tuft.brush.tuft.bundles;
     const std::size_t n = reservoir.n_bundles(), n_cells = reservoir.n_cells();
-    std::vector<double> saturation(n, 0), depth(n_cells, 0);
+    Recycled<double> saturation(n, 0), depth(n_cells, 0);
     for (std::size_t i = 0; i < cells_.size(); ++i) depth[i % n_cells] += static_cast<double>(cells_[i]);
-    Wetness wetness{.of_bundle = std::vector<double>(n)};
+    Wetness wetness{.of_bundle = Recycled<double>(n)};
     // Which hair touches with which part of it flickers from stamp to stamp: threads of ink would break in dashes.
     const double soaks = -std::expm1(-(motion.travel - updated_at_) / kSoakLength);
     for (std::size_t k = 0; k < n; ++k) {
@@ -112,7 +112,7 @@ void HairContact::draw_shape(Stamp& stamp, const TuftInHand& tuft, const footpri
     const footprint::ShapeOptions options{.film = kSkinFilm, .wetness = std::min(1.0, wetness.mean)};
     if (!carried.lines.empty()) {
         const footprint::LineInk ink{wetness.of_bundle, motion.travel, hair.bundles.seed};
-        const std::vector<footprint::Polygon> hairs =
+        const Recycled<footprint::Polygon> hairs =
             footprint::hair_polygons(carried, shape, contact.frame, tuft.preset().hair_diameter, ink, options);
         stamp.footprint = footprint::rasterise_polygons(hairs, contact.frame, contact.triangle, options_.closed.cell);
         return;
@@ -138,7 +138,7 @@ void HairContact::place_nodes(Stamp& stamp, const TuftInHand& tuft, const footpr
     const Vec2 row = row_of(hair.trails);
     if (glm::length(row) > 1e-6) lie = (glm::dot(Vec2{-row.y, row.x}, lie) < 0 ? -1.0 : 1.0) * Vec2{-row.y, row.x};
     if (glm::length(lie) > 1e-9) axis_ = glm::normalize(lie);
-    std::vector<Vec2> places;
+    Recycled<Vec2> places;
     for (const footprint::Outline& outline : hair.outlines) {
         places.insert(places.end(), outline.left.begin(), outline.left.end());
         places.insert(places.end(), outline.right.begin(), outline.right.end());
@@ -146,17 +146,17 @@ void HairContact::place_nodes(Stamp& stamp, const TuftInHand& tuft, const footpr
         places.push_back(outline.tail);
     }
     const brush::CarriedShape* carried = tuft.brush.tuft.carried.get();
-    const std::vector<footprint::HairContactPoint> points =
+    const Recycled<footprint::HairContactPoint> points =
         carried ? footprint::shape_contact_points(*carried, contact.tuft.shape, contact.frame, kSkinFilm)
                 : footprint::hair_contact_points(hair.trails, hair.bundles, hair.branches);
     if (carried)
         for (const footprint::HairContactPoint& t : points) places.push_back(t.at);
     stamp.grid = ink::make_contact_grid(places, axis_);
-    std::vector<ink::HairSample> samples;
+    Recycled<ink::HairSample> samples;
     for (const footprint::HairContactPoint& t : points) samples.push_back({t.bundle, t.at, t.along, t.length});
     nodes_ = ink::node_contact(tuft.brush.reservoir, stamp.grid, samples, cells_);
     if (hair.trails.empty()) return;
-    const std::vector<footprint::Cut>& cuts = hair.trails.front().cuts;
+    const Recycled<footprint::Cut>& cuts = hair.trails.front().cuts;
     const Vec2 e(cuts[cuts.size() / 2].e);
     orientation_ = axis_.x * e.y - axis_.y * e.x < 0 ? -1 : 1;
 }
@@ -170,7 +170,7 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
     const bool by_lines = carried && !carried->lines.empty();
     const auto branches = static_cast<int>(contact.tuft.branches.size());
     if (!motion.touching) tracks_ = {};
-    std::vector<footprint::Trail>& trails = shape.trails;
+    Recycled<footprint::Trail>& trails = shape.trails;
     cells_ = carried ? footprint::shape_contact_cells(
                            footprint::shape_contact_points(*carried, contact.tuft.shape, contact.frame, kSkinFilm),
                            bundles.place.size(), ends)
@@ -190,14 +190,14 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
         const double gathers = pivot * std::clamp((1 - wetness.mean) / kGathersLack, 0.0, 1.0);
         footprint::gather_trails(trails, std::lerp(1.0, kGathered, gathers));
     }
-    std::vector<footprint::Trail> uncovered;  // without the upright hair
+    Recycled<footprint::Trail> uncovered;  // without the upright hair
     if (by_hair_) {
         if (!motion.touching) previous_.clear();
         footprint::change_frame(previous_, previous_frame_, contact.frame);
         uncovered = trails;
     }
     footprint::cover_upright_hair(trails, shape.upright, contact.frame, kSkinFilm);
-    std::vector<footprint::Trail> drawn;  // with what leapt since the pose before
+    Recycled<footprint::Trail> drawn;  // with what leapt since the pose before
     if (by_hair_) {
         shape.outlines = footprint::outlines_of(trails, footprint::OutlineOptions{}.points, shape.leapt);
         drawn = footprint::trails_passed(trails, shape.leapt);

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <vector>
-
 #include "contact/contact.h"
+#include "core/system/recycled.h"
 #include "footprint/outline/hair.h"
 #include "ink/exchange/contact_nodes.h"
 #include "stroke/contact/hair_shape.h"
@@ -55,7 +54,7 @@ class HairContact {
 
   private:
     struct Wetness {
-        std::vector<double> of_bundle;
+        Recycled<double> of_bundle;
         double mean = 0, lack = 0;  ///< over the bundles; `lack`: mean of max(0, 1 − wetness)
     };
     /// Draws the footprint of a tuft with a geometry of its own, or of foam.
@@ -72,10 +71,10 @@ class HairContact {
     HairContactOptions options_;
     ink::ContactCells cells_, cells_since_;
     ink::NodeContact nodes_;
-    std::vector<double> soaked_;              // wetness of each bundle at its last contact
-    double updated_at_ = 0;                   // travel at which wetness and splitting were last updated
-    footprint::HairTracks tracks_;            // of the hair on the surface
-    std::vector<footprint::Trail> previous_;  // trails of the last stamp by hair, in `previous_frame_`
+    Recycled<double> soaked_;              // wetness of each bundle at its last contact
+    double updated_at_ = 0;                // travel at which wetness and splitting were last updated
+    footprint::HairTracks tracks_;         // of the hair on the surface
+    Recycled<footprint::Trail> previous_;  // trails of the last stamp by hair, in `previous_frame_`
     Frame previous_frame_;
     HairTone tone_;  // with `tones`
     bool by_hair_ = false;

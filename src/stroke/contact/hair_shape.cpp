@@ -24,7 +24,7 @@ SurfacePath next_path(const SurfacePath& last, const Vec3& position, const Frame
 }
 
 /// Direction of the hand; before it moves, that in which its hair trails it.
-Vec2 direction_of(const SurfacePath& path, const std::vector<footprint::Trail>& trails, const Frame& frame) {
+Vec2 direction_of(const SurfacePath& path, const Recycled<footprint::Trail>& trails, const Frame& frame) {
     const Vec2 course{glm::dot(path.course, frame.t), glm::dot(path.course, frame.b)};
     if (glm::length(course) > 1e-9) return glm::normalize(course);
     Vec2 back{0};
@@ -77,7 +77,7 @@ footprint::RoughEdge edge_of(const HairShape& hair, const ClosedHairOptions& opt
 }
 
 void close_hair(HairShape& hair, const contact::Result& contact, const ClosedHairOptions& options) {
-    std::vector<footprint::Trail> trails = hair.trails;
+    Recycled<footprint::Trail> trails = hair.trails;
     footprint::cover_upright_hair(trails, hair.upright, contact.frame, kSkinFilm);
     hair.outlines = footprint::outlines_of(trails, footprint::OutlineOptions{}.points, hair.leapt);
     hair.closed =

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "brush/tuft/upright_hair.h"
 #include "contact/contact.h"
+#include "core/system/recycled.h"
 #include "footprint/outline/cuts.h"
 #include "footprint/outline/footprint.h"
 #include "footprint/outline/rough_edge.h"
@@ -25,12 +25,12 @@ struct SurfacePath {
 
 /// Hair on the surface at one pose, in the frame of the contact.
 struct HairShape {
-    std::vector<footprint::Trail> trails;        ///< of all branches, without the upright hair
-    std::vector<footprint::Trail> leapt;         ///< of the pose before, see footprint::leapt_trails; or none
+    Recycled<footprint::Trail> trails;           ///< of all branches, without the upright hair
+    Recycled<footprint::Trail> leapt;            ///< of the pose before, see footprint::leapt_trails; or none
     brush::UprightHair upright;                  ///< `share` 0: none
     SurfacePath hand;                            ///< up to this pose
     footprint::EdgeHair edge;                    ///< at the edge of wet hair
-    std::vector<footprint::Outline> outlines;    ///< of wet hair, which closes its gaps; with `closed` only
+    Recycled<footprint::Outline> outlines;       ///< of wet hair, which closes its gaps; with `closed` only
     std::optional<footprint::Footprint> closed;  ///< footprint of wet hair, where it was computed
     std::optional<StampPlan> plan;               ///< of `closed`
 };
@@ -44,7 +44,7 @@ inline bool touches(const contact::Result& contact) {
 /// spines; empty after three poses that did not: hair that springs forward while it is lifted may be in the air for a
 /// pose or two.
 struct LastHair {
-    std::vector<footprint::Trail> trails;
+    Recycled<footprint::Trail> trails;
     Frame frame;
     Vec3 root{0};      ///< metres, world, of the ferrule
     int missed = 0;    ///< poses since then

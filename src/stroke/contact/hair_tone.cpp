@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <vector>
 
 #include "core/ease.h"
 #include "core/geometry/solid_noise.h"
@@ -25,9 +24,9 @@ double beside(const footprint::EdgeHair& edge, const Vec2& at) {
 }
 
 /// Load of each bundle: saturation of its cells times what it holds.
-std::vector<double> loads_of(const ink::Reservoir& reservoir, const brush::Bundles& bundles) {
+Recycled<double> loads_of(const ink::Reservoir& reservoir, const brush::Bundles& bundles) {
     const std::size_t cells = reservoir.n_cells();
-    std::vector<double> loads(bundles.place.size(), 0);
+    Recycled<double> loads(bundles.place.size(), 0);
     for (std::size_t k = 0; k < loads.size() && k < reservoir.n_bundles(); ++k) {
         // The last cell lies on the surface.
         loads[k] = reservoir.saturation((k + 1) * cells - 1) * bundles.holds[k];
@@ -92,7 +91,7 @@ void HairTone::compute(const footprint::EdgeHair& edge, double cell, const ink::
     computed_ = false;
     if (points.empty()) return;
     double lo = 1e9, hi = -1e9;
-    std::vector<bool> touches(bundles.place.size(), false);
+    Recycled<bool> touches(bundles.place.size(), false);
     for (const footprint::HairContactPoint& p : points) {
         const double x = beside(edge, p.at);
         lo = std::min(lo, x);
@@ -102,7 +101,7 @@ void HairTone::compute(const footprint::EdgeHair& edge, double cell, const ink::
     const auto count = static_cast<double>(std::count(touches.begin(), touches.end(), true));
     if (hi - lo < kLeastSpan) return;
     const double per_metre = (n - 1) / (hi - lo), reach = kReach * (n - 1) / std::max(2.0, count);
-    const std::vector<double> loads = loads_of(reservoir, bundles);
+    const Recycled<double> loads = loads_of(reservoir, bundles);
     Sums sums;
     double weight = 0, load = 0;
     for (const footprint::HairContactPoint& p : points) {

@@ -37,8 +37,8 @@ void TuftInHand::update_wetness() {
 void TuftInHand::bend(brush::TuftState next, const brush::Pose& pose) {
     ink::Reservoir& reservoir = brush.reservoir;
     if (!state.branches.empty() && !next.branches.empty() && ink::is_mixed(reservoir)) {
-        const std::vector<brush::Section>& before = state.branches[0].sections;
-        const std::vector<brush::Section>& after = next.branches[0].sections;
+        const Recycled<brush::Section>& before = state.branches[0].sections;
+        const Recycled<brush::Section>& after = next.branches[0].sections;
         const Quat turn = pose.rotation * glm::inverse(rotation);
         const std::size_t cells = reservoir.n_cells();
         std::vector<Vec2> bent(cells, Vec2{0});

@@ -91,7 +91,7 @@ PlaneInk plane_ink(const StrokeSamples& trace, const brush::Preset& preset, cons
     PlaneInk ink(cell);
     double time = 0;
     bool first = true;
-    std::vector<footprint::Outline> outlines;
+    Recycled<footprint::Outline> outlines;
     for (const brush::Pose& pose : resample(poses, {.step = step, .lever = preset.length})) {
         const brush::TuftState state = brush::step(tuft, pose, {&plane, 1}, first ? 0 : pose.time - time);
         time = pose.time;
@@ -104,7 +104,7 @@ PlaneInk plane_ink(const StrokeSamples& trace, const brush::Preset& preset, cons
                     std::max(0.0, time));
             continue;
         }
-        std::vector<footprint::Trail> trails = footprint::find_trails(state, plane_frame, {}, preset.length, kSkinFilm);
+        Recycled<footprint::Trail> trails = footprint::find_trails(state, plane_frame, {}, preset.length, kSkinFilm);
         footprint::cover_upright_hair(trails, brush::upright_hair_of(tuft, plane), plane_frame, kSkinFilm);
         outlines.clear();
         for (const footprint::Trail& trail : trails)

@@ -1,0 +1,49 @@
+#include "core/system/allocations.h"
+
+#include <gtest/gtest.h>
+
+#include "contact/contact.h"
+#include "shapes.h"
+
+namespace tuft::contact {
+namespace {
+
+// Presses the tuft onto the surface round `at`, draws it to and fro over it, and lifts it. Returns the allocations.
+std::uint64_t allocations_of_a_stroke(brush::Tuft& tuft, const mesh::SurfaceQuery& surface, const Vec3& at) {
+    constexpr int kPoses = 80;
+    Memory memory;
+    Result result;
+    const std::uint64_t before = allocations_of_this_thread();
+    for (int i = 0; i < kPoses; ++i) {
+        const double part = static_cast<double>(i) / kPoses, turn = 2 * std::numbers::pi * part;
+        const double depth = 0.25 * tuft.preset.length * std::min(1.0, 2 * std::sin(std::numbers::pi * part));
+        brush::Pose pose;
+        pose.rotation = glm::angleAxis(0.3 * std::sin(2 * turn), Vec3{0, 1, 0});
+        pose.position = at + Vec3{0.6 * tuft.preset.length * std::sin(turn), 1e-3 * std::sin(3 * turn), -depth} -
+                        tuft.preset.length * pose.axis();
+        pose.time = 1e-3 * i;
+        result = step(tuft, pose, surface, memory, 1e-3);
+    }
+    EXPECT_TRUE(memory.centres.size() > 4);
+    return allocations_of_this_thread() - before;
+}
+
+// The second stroke finds the memory of the first.
+TEST(Allocations, AWarmStepMakesNone) {
+    const mesh::TriangleMesh flat = shapes::sheet(0.3, 60), edge = shapes::roof(0.5), round = shapes::bowl(0.05);
+    for (const char* name : {"wolf-medium", "liner-3", "flat-12", "sword-8", "sponge-30", "fan-30"}) {
+        for (const mesh::TriangleMesh* m : {&flat, &edge, &round}) {
+            const mesh::SurfaceQuery surface(*m);
+            const auto foot = surface.closest_point({0, 0, 0.01});
+            ASSERT_TRUE(foot);
+            const brush::Tuft rested = brush::make_tuft(brush::load_preset(name));
+            brush::Tuft tuft = rested;
+            allocations_of_a_stroke(tuft, surface, foot->position);
+            tuft = rested;
+            EXPECT_EQ(allocations_of_a_stroke(tuft, surface, foot->position), 0u) << name;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace tuft::contact
