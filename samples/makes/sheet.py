@@ -12,11 +12,12 @@ import sys
 
 from hand import Stroke, care, write
 
-def line(x0, y0, x1, y1, roll, press=0.5, land=0.12):
-    """Keys of a straight stroke that lands and leaves within the part `land` of it."""
+def line(x0, y0, x1, y1, roll, press=0.5, land=0):
+    """Keys of a straight stroke that lands and leaves within `land`, mm, or an eighth of it."""
+    part = min(0.4, max(0.12, land / math.dist((x0, y0), (x1, y1))))
     def at(f):
         return x0 + f * (x1 - x0), y0 + f * (y1 - y0)
-    return [(*at(0), 0, roll), (*at(land), press, roll), (*at(1 - land), press, roll), (*at(1), 0, roll)]
+    return [(*at(0), 0, roll), (*at(part), press, roll), (*at(1 - part), press, roll), (*at(1), 0, roll)]
 
 
 def wave(x0, x1, y, height, broad, roll_of=None, press=0.5):
@@ -31,8 +32,11 @@ def wave(x0, x1, y, height, broad, roll_of=None, press=0.5):
     return keys
 
 
-def strokes(cell, width, broad):
-    """The strokes of one make, on 4 by 2 cells, with the origin at the upper left corner of the first one."""
+def strokes(cell, length, broad):
+    """The strokes of one make, on 4 by 2 cells, with the origin at the upper left corner of the first one.
+
+    A round tuft is pressed down over a quarter of its hair: that much of it comes to trail, and a hand that presses
+    sooner pushes it against its point, which draws a head wider than the stroke and a neck behind it."""
     across = 90.0 if broad else 0.0  # the broad side across a stroke to the right
     speed = 0.8 * cell
     out = []
@@ -47,12 +51,13 @@ def strokes(cell, width, broad):
                                           (x + 0.2 * cell, y, 0, across)], 0.5 * cell))
     x, y = centre(1, 0)
     half = 0.36 * cell
-    out.append(Stroke("straight").go(line(x - half, y - 0.2 * cell, x + half, y - 0.2 * cell, across), speed))
-    out.append(Stroke("straight, diagonal").go(line(x - half, y + 0.35 * cell, x + half, y + 0.05 * cell, across), speed))
+    land = 0 if broad else 0.25 * length
+    out.append(Stroke("straight").go(line(x - half, y - 0.2 * cell, x + half, y - 0.2 * cell, across, land=land), speed))
+    out.append(Stroke("straight, diagonal").go(line(x - half, y + 0.35 * cell, x + half, y + 0.05 * cell, across, land=land), speed))
     x, y = centre(2, 0)
-    out.append(Stroke("edge, to the right").go(line(x - half, y - 0.25 * cell, x + half, y - 0.25 * cell, 0, 0.35), speed))
-    out.append(Stroke("edge, down").go(line(x - 0.15 * cell, y - 0.12 * cell, x - 0.15 * cell, y + half, across, 0.35), speed))
-    out.append(Stroke("broad, down").go(line(x + 0.2 * cell, y - 0.12 * cell, x + 0.2 * cell, y + half, 0, 0.5), speed))
+    out.append(Stroke("edge, to the right").go(line(x - half, y - 0.25 * cell, x + half, y - 0.25 * cell, 0, 0.35, land), speed))
+    out.append(Stroke("edge, down").go(line(x - 0.15 * cell, y - 0.12 * cell, x - 0.15 * cell, y + half, across, 0.35, land), speed))
+    out.append(Stroke("broad, down").go(line(x + 0.2 * cell, y - 0.12 * cell, x + 0.2 * cell, y + half, 0, 0.5, land), speed))
     x, y = centre(3, 0)
     turn = [(x + 0.27 * cell * math.sin(t), y - 0.27 * cell * math.cos(t), 0.5 * min(1, t / 0.6, (4.5 - t) / 0.6), across)
             for t in [4.5 * i / 60 for i in range(61)]]
@@ -70,9 +75,9 @@ def strokes(cell, width, broad):
     x, y = centre(2, 1)
     for i, amount in enumerate((0.6, 0.75, 0.88)):
         at = y + (i - 1) * 0.3 * cell
-        out.append(Stroke(f"dry {amount}", care("wipe", amount=amount)).go(line(x - half, at, x + half, at, across), 1.5 * speed))
+        out.append(Stroke(f"dry {amount}", care("wipe", amount=amount)).go(line(x - half, at, x + half, at, across, land=land), 1.5 * speed))
     x, y = centre(3, 1)
-    out.append(Stroke("leaning").go(line(x - half, y - 0.2 * cell, x + half, y - 0.2 * cell, across, 0.25), speed))
+    out.append(Stroke("leaning").go(line(x - half, y - 0.2 * cell, x + half, y - 0.2 * cell, across, 0.25, land), speed))
     out.append(Stroke("reversed").go([(x - half, y + 0.2 * cell, 0, across), (x - 0.8 * half, y + 0.2 * cell, 0.4, across),
                                       (x + half, y + 0.2 * cell, 0.4, across), (x - 0.3 * half, y + 0.25 * cell, 0.4, across),
                                       (x - half, y + 0.25 * cell, 0, across)], speed))
@@ -96,7 +101,7 @@ def main():
                 a, b = j * (n + 1) + i + 1, (j + 1) * (n + 1) + i + 1
                 f.write(f"f {a}/{a} {b}/{b} {b + 1}/{b + 1}\nf {a}/{a} {b + 1}/{b + 1} {a + 1}/{a + 1}\n")
     write(folder / f"{brush}.inkml", brush, [({"brush": brush, "origin": "0 0 0", "right": "1 0 0", "down": "0 -1 0",
-                                               "mapping": "project"}, strokes(cell, width, broad))])
+                                               "mapping": "project"}, strokes(cell, length, broad))])
 
 
 main()

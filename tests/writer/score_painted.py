@@ -11,6 +11,7 @@ not marked down for where it wrote. Prints for each character and in the mean:
                6 units, that the model has not (none of half the size within 30 units)
   beyond       95th percentile of the distance of the painted outline from that of the model, units
   cpu          seconds of the whole command per stroke, model and painting included
+With --drawn FOLDER, the pictures of `measure_writer score --drawn` are scored as they lie, in place of paintings.
 Needs numpy and Pillow."""
 import argparse, json, os, random, resource, subprocess, sys, tempfile
 import numpy as np
@@ -121,7 +122,7 @@ def knuckles(painted, model):
     return n, float(np.percentile(far, 95))
 
 if __name__ == '__main__':
-    a = argparse.ArgumentParser(); a.add_argument('data'); a.add_argument('characters'); a.add_argument('--tuft', required=True)
+    a = argparse.ArgumentParser(); a.add_argument('data'); a.add_argument('characters'); a.add_argument('--tuft', default='tuft'); a.add_argument('--drawn', default='')
     a.add_argument('--write', default=''); a.add_argument('--keep', default=''); a.add_argument('--n', type=int, default=0); a.add_argument('--sample', type=int, default=0); a.add_argument('--sheet', default='models/sheet.ply')
     o = a.parse_args(); folder = o.keep or tempfile.mkdtemp(); os.makedirs(folder, exist_ok=True)
     text = [c for c in open(o.characters).read() if ord(c) > 0x2000]; rows = []
@@ -130,15 +131,16 @@ if __name__ == '__main__':
     os.environ['XDG_CACHE_HOME'] = tempfile.mkdtemp()   # nothing is in the cache
     for c in text:
         character = json.load(open(os.path.join(o.data, c + '.json'))); n = len(character['strokes']); out = os.path.join(folder, c)
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        for command in ([o.tuft, 'write', o.sheet, '--text', c, '--glyphs', o.data, '--size', str(SIDE), '--place', '0,0,0', '--atlas-size', str(TEXELS),
+        before = resource.getrusage(resource.RUSAGE_CHILDREN); cpu = 0
+        for command in () if o.drawn else ([o.tuft, 'write', o.sheet, '--text', c, '--glyphs', o.data, '--size', str(SIDE), '--place', '0,0,0', '--atlas-size', str(TEXELS),
                          '--project', out + '.tuft', '--quiet'] + o.write.split(), [o.tuft, 'export', out + '.tuft', '-o', out + '-base-colour.png', '--map', 'base-colour', '--quiet']):
             ran = subprocess.run(command, capture_output=True, text=True)
             if ran.returncode: sys.exit('%s: %s' % (c, ran.stderr.strip()))
             if command[1] == 'write':
                 after = resource.getrusage(resource.RUSAGE_CHILDREN); cpu = (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)/n
-        os.remove(out + '.tuft')
-        T = truth(character); R, iou = best_match(T, np.asarray(Image.open(out + '-base-colour.png').convert('L')))
+        T = truth(character)
+        if o.drawn: R = np.asarray(Image.open(os.path.join(o.drawn, c + '.pgm'))) < INK; iou = (R & T).sum()/(R | T).sum()
+        else: os.remove(out + '.tuft'); R, iou = best_match(T, np.asarray(Image.open(out + '-base-colour.png').convert('L')))
         k, far = knuckles(R, T) if R is not None else (0, 999)
         rows.append((iou, k/n, far, cpu, n)); print('%s strokes %2d IoU %.3f knuckles %.2f beyond %.1f cpu %.3f' % (c, n, iou, k/n, far, cpu), flush=True)
     r = np.array(rows); w = r[:, 4]/r[:, 4].sum()
