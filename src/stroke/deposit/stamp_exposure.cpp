@@ -10,6 +10,10 @@ void add(ink::NodeContents& sum, const ink::NodeContents& part) {
         for (int p = 0; p < ink::Reservoir::kPlanes; ++p) sum[node][p] += part[node][p];
 }
 
+bool same(const footprint::Motion& a, const footprint::Motion& b) {
+    return a.shift == b.shift && a.turn == b.turn;
+}
+
 // `tile`: a StampExposure::Tile.
 template <class Tile>
 ink::StampedTile stamped(const Tile& tile, const StampTarget& target, double ds) {
@@ -54,7 +58,7 @@ footprint::StampJobs StampExposure::plan(const footprint::Footprint& footprint, 
 }
 
 ink::NodeAreas StampExposure::expose(Stamp& stamp) {
-    if (stamp.plan && stamp.plan->motion == stamp.motion && stamp.separation == 0)
+    if (stamp.plan && same(stamp.plan->motion, stamp.motion) && stamp.separation == 0)
         plan_ = std::move(stamp.plan->jobs);
     else
         plan_ = plan(stamp.footprint, joined_motion(stamp, target_.texels().texel_size), stamp_options(options_, stamp),
