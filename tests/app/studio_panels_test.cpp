@@ -57,8 +57,8 @@ TEST_P(PanelsAt1280Times720, NothingNeededForPaintingScrolls) {
         if (name == "line" || name == "curve") expect({"Press down in", "Lift in", "Pace"});
         if (name == "writing") expect({"Writing or drawing...", "Width", "Turn", "Drape", "Wrap", "Mirrored"});
         if (name == "text")
-            expect({"Text", "Style", "Own brush", "Across", "Down", "Round", "Curve##direction",
-                    "Characters from...", "Snap", "Size", "Spacing", "Turn"});
+            expect({"Text", "Style", "Own brush", "Across", "Down", "Round", "Curve##direction", "Characters from...",
+                    "Snap", "Size", "Spacing", "Turn"});
         if (name == "brush" || name == "eraser") expect({"Speed lightens", "Rest deepens", "Clean ends"});
         if (name != "eraser")
             expect({"carbon", "water", "Colour...", "Wet ink", "1 min", "Dry", "Don't reload", "Another ink in the tip",

@@ -11,7 +11,7 @@
 namespace tuft::app {
 namespace {
 
-constexpr float kLetteringWidth = 236;  // pixels at a scale of 1
+constexpr float kLetteringWidth = 244;  // pixels at a scale of 1
 constexpr float kTextLines = 3.6f;      // of the field, seen without scrolling
 
 /// Names of shipped styles in the window.
