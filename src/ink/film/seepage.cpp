@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/system/parallel.h"
 #include "ink/film/film_seams.h"
 
 namespace tuft::ink::wet {
@@ -52,23 +51,13 @@ bool Seepage::find(const TileList& tiles, std::span<const Sources> sources) {
 }
 
 void Seepage::take_tiles(const TileList& tiles, std::span<const Sources> sources) {
-    for (auto& tile : tiles_) spare_.push_back(std::move(tile));
-    tiles_.clear();
-    set_of_.assign(tiles.list.size(), kNone);
-    for (const std::uint32_t place : places_) {
-        set_of_[place] = static_cast<std::uint32_t>(tiles_.size());
-        if (spare_.empty()) spare_.push_back(std::make_unique<SeepTile>());
-        tiles_.push_back(std::move(spare_.back()));
-        spare_.pop_back();
-        SeepTile& tile = *tiles_.back();
-        tile.place = place;
-        const auto [w, s] = sources[place].liquid;
-        tile.film = (w ? w : &kDry)->data();
-        tile.start = (s ? s : &kDry)->data();
+    tiles_.take(places_, tiles.list.size());
+    for (const auto& tile : tiles_) {
+        const auto [w, s] = sources[tile->place].liquid;
+        tile->film = (w ? w : &kDry)->data();
+        tile->start = (s ? s : &kDry)->data();
     }
-    parallel_for(tiles_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) open_tile(*tiles_[i], tiles.list[tiles_[i]->place]);
-    });
+    tiles_.each(kGrain, [&](SeepTile& t) { open_tile(t, tiles.list[t.place]); });
 }
 
 void Seepage::open_tile(SeepTile& tile, const Active& active) const {
@@ -77,7 +66,7 @@ void Seepage::open_tile(SeepTile& tile, const Active& active) const {
         ones.fill(1);
         return ones;
     }();
-    const auto in_set = [&](std::uint32_t place) { return place == kNone ? kNone : set_of_[place]; };
+    const auto in_set = [&](std::uint32_t place) { return tiles_.index(place); };
     std::array<const float*, 9> open;
     for (std::size_t i = 0; i < 9; ++i) {
         tile.around[i] = in_set(active.around[i]);
@@ -98,7 +87,7 @@ void Seepage::open_tile(SeepTile& tile, const Active& active) const {
 Field Seepage::padded(const SeepTile& tile, int plane) const {
     std::array<const float*, 9> from;
     for (std::size_t i = 0; i < 9; ++i)
-        from[i] = tile.around[i] == kNone ? kDry.data() : plane_of(*tiles_[tile.around[i]], plane);
+        from[i] = tile.around[i] == kNone ? kDry.data() : plane_of(tiles_[tile.around[i]], plane);
     Field field;
     std::fill(field.begin() + kRow * kRow, field.end(), 0.0f);
     gather_field(field, from);
@@ -111,17 +100,14 @@ const float* Seepage::plane_of(const SeepTile& tile, int plane) {
 }
 
 bool Seepage::run_stages(const TileList& tiles, double flow, double soak, int n_stages) {
-    parallel_for(tiles_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            SeepTile& t = *tiles_[i];
-            t.dry = t.starts_dry;
-            if (t.dry) t.s = {};
-            t.least = 0;
-            t.faces = {};
-            t.soaked = {};
-            for (SeepLink& l : t.links) l.through = {};
-            t.beyond.fill(0);
-        }
+    tiles_.each(kGrain, [&](SeepTile& t) {
+        t.dry = t.starts_dry;
+        if (t.dry) t.s = {};
+        t.least = 0;
+        t.faces = {};
+        t.soaked = {};
+        for (SeepLink& l : t.links) l.through = {};
+        t.beyond.fill(0);
     });
     for (int j = 1; j <= n_stages; ++j) {
         const SeepStage stage{
@@ -132,9 +118,7 @@ bool Seepage::run_stages(const TileList& tiles, double flow, double soak, int n_
             .before = static_cast<float>(j - 1) / static_cast<float>(j + 2),
             .from = (j + 1) % 2};
         const int from = j == 1 ? kStart : stage.from;
-        parallel_for(tiles_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) run_stage(tiles, *tiles_[i], from, stage);
-        });
+        tiles_.each(kGrain, [&](SeepTile& t) { run_stage(tiles, t, from, stage); });
         last_ = 1 - stage.from;
     }
     return std::all_of(tiles_.begin(), tiles_.end(), [](const auto& t) { return t->least >= -kRounding; });
@@ -142,7 +126,7 @@ bool Seepage::run_stages(const TileList& tiles, double flow, double soak, int n_
 
 bool Seepage::reached(const SeepTile& tile, const Field& s, int from) const {
     return !all_zero(s) || std::any_of(tile.links.begin(), tile.links.end(), [&](const SeepLink& l) {
-        return plane_of(*tiles_[l.other], from)[l.other_texel] != 0;
+        return plane_of(tiles_[l.other], from)[l.other_texel] != 0;
     });
 }
 
@@ -152,7 +136,7 @@ void Seepage::run_stage(const TileList& tiles, SeepTile& tile, int from, const S
     tile.dry = false;
     for (const SeepLink& l : tile.links) tile.beyond[l.texel] = 0;
     for (SeepLink& l : tile.links) {
-        seep_over_link(l, plane_of(tile, from)[l.texel], plane_of(*tiles_[l.other], from)[l.other_texel], stage);
+        seep_over_link(l, plane_of(tile, from)[l.texel], plane_of(tiles_[l.other], from)[l.other_texel], stage);
         tile.beyond[l.texel] += l.through[static_cast<std::size_t>(1 - stage.from)];
     }
     seep_stage(tile, s, *tiles.list[tile.place].geometry, stage);
@@ -180,12 +164,10 @@ double Seepage::solve(const TileList& tiles, std::span<const Sources> sources, d
     if (dt * leaving > part_of(kMostStages)) dt = part_of(kMostStages) / leaving;
     while (!run_stages(tiles, dt * rate, dt * params_.absorbency, stages_of(dt * leaving)) && dt * leaving > 1)
         dt *= 0.5;
-    parallel_for(tiles_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            if (tiles_[i]->dry) continue;
-            smear_links(*tiles_[i]);
-            find_carried(*tiles_[i], tiles, sources[tiles_[i]->place]);
-        }
+    tiles_.each(kGrain, [&](SeepTile& t) {
+        if (t.dry) return;
+        smear_links(t);
+        find_carried(t, tiles, sources[t.place]);
     });
     return dt;
 }
@@ -194,7 +176,7 @@ void Seepage::smear_links(SeepTile& tile) const {
     const auto total = [](const SeepTile& t, std::uint8_t texel) { return t.start[texel] + t.film[texel]; };
     for (SeepLink& l : tile.links) {
         const float near = std::min(std::max(1 / std::max(l.apart * l.apart, 1e-6f), 1.0f), kMostNear) - 1;
-        const float least = std::min(total(tile, l.texel), total(*tiles_[l.other], l.other_texel));
+        const float least = std::min(total(tile, l.texel), total(tiles_[l.other], l.other_texel));
         l.smeared = 0.5f * std::min(near * std::abs(l.through[static_cast<std::size_t>(last_)]),
                                     kMostSmeared * l.weight * least);
     }
@@ -220,7 +202,7 @@ void Seepage::flow(std::uint32_t place, const TileList& tiles, std::span<const S
     seepage_flow(work, tile, *active.geometry, last_, padded(tile, kCarried));
     crossing.clear(tile.links.size(), pigments);
     for (const SeepLink& l : tile.links) {
-        const SeepTile& other = *tiles_[l.other];
+        const SeepTile& other = tiles_[l.other];
         const Sources& from = sources[other.place];
         for (int p = 0; p < pigments; ++p) {
             const Plane* open = from.open[static_cast<std::size_t>(p)];

@@ -2,12 +2,12 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include "ink/film/film_list.h"
 #include "ink/film/film_worker.h"
+#include "ink/film/tile_set.h"
 
 /// \file
 /// Flow of liquid through the pores. Internal to the wet film (film.h).
@@ -91,7 +91,7 @@ class Seepage {
   public:
     void start(const FilmParams& params) { params_ = params; }
     /// Gives its memory back, 20 KiB a tile.
-    void release() { tiles_.clear(), spare_.clear(); }
+    void release() { tiles_.release(); }
     /// Chooses the tiles with liquid and those around them. Whether there are any.
     bool find(const TileList& tiles, std::span<const Sources> sources);
     /// Returns the greatest step, seconds, that follows fronts which start from a film: 50 ms, or longer where none
@@ -101,16 +101,15 @@ class Seepage {
     double solve(const TileList& tiles, std::span<const Sources> sources, double dt);
     /// Of a place in the list; null: nothing flows there.
     const SeepTile* tile(std::uint32_t place) const {
-        const std::uint32_t i = set_of_[place];
-        return i == kNone || tiles_[i]->dry ? nullptr : tiles_[i].get();
+        const std::uint32_t i = tiles_.index(place);
+        return i == kNone || tiles_[i].dry ? nullptr : &tiles_[i];
     }
     /// Sets the flow of a tile of the set in `work` and `crossing`, as `fluxes` and `wet::cross_seams` do.
     void flow(std::uint32_t place, const TileList& tiles, std::span<const Sources> sources, int pigments, Work& work,
               Crossing& crossing) const;
 
   private:
-    std::vector<std::unique_ptr<SeepTile>> tiles_, spare_;
-    std::vector<std::uint32_t> set_of_;  ///< [list]
+    TileSet<SeepTile> tiles_;
     std::vector<std::uint32_t> places_;  ///< chosen ones, ascending
     FilmParams params_;
     int last_ = 0;  ///< of the two results the one of the last stage

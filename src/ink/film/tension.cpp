@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/system/parallel.h"
 #include "ink/film/drips.h"
 #include "ink/film/film_seams.h"
 
@@ -79,9 +78,7 @@ void find_change(TensionTile& t) {
 
 template <class Fn>
 void Tension::each(Fn&& fn) {
-    parallel_for(tiles_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) fn(*tiles_[i]);
-    });
+    tiles_.each(kGrain, fn);
 }
 
 void Tension::start(const FilmParams& params, const atlas::TexelMap& map) {
@@ -131,7 +128,7 @@ void Tension::cross_seams(std::uint32_t place, std::span<const Sources> sources,
     const TensionTile& tile = *this->tile(place);
     crossing.clear(tile.links.size(), pigments);
     for (const TensionLink& l : tile.links) {
-        const TensionTile& beyond = *tiles_[l.other];
+        const TensionTile& beyond = tiles_[l.other];
         const auto here = static_cast<std::size_t>(field_of(l.texel)),
                    there = static_cast<std::size_t>(field_of(l.other_texel));
         const Sources& from = sources[beyond.place];
@@ -169,17 +166,8 @@ void Tension::begin(const TileList& tiles, std::span<const Sources> sources, flo
 }
 
 void Tension::take_tiles(const TileList& tiles) {
-    for (auto& tile : tiles_) spare_.push_back(std::move(tile));
-    tiles_.clear();
-    set_of_.assign(tiles.list.size(), kNone);
-    for (const std::uint32_t place : places_) {
-        set_of_[place] = static_cast<std::uint32_t>(tiles_.size());
-        if (spare_.empty()) spare_.push_back(std::make_unique<TensionTile>());
-        tiles_.push_back(std::move(spare_.back()));
-        spare_.pop_back();
-        tiles_.back()->place = place;
-        tiles_.back()->held = held_on(tiles.list[place].slot);
-    }
+    tiles_.take(places_, tiles.list.size());
+    for (const auto& tile : tiles_) tile->held = held_on(tiles.list[tile->place].slot);
 }
 
 void Tension::open_tile(TensionTile& t, const Active& active, std::span<const Sources> sources, float mobility) const {
@@ -197,7 +185,7 @@ void Tension::open_tile(TensionTile& t, const Active& active, std::span<const So
 void Tension::take_mobility(TensionTile& t) const {
     std::array<const float*, 9> around{};
     for (std::size_t i = 0; i < 9; ++i)
-        if (t.around[i] != kNone) around[i] = tiles_[t.around[i]]->mobility.data();
+        if (t.around[i] != kNone) around[i] = tiles_[t.around[i]].mobility.data();
     take_border<16>(t.mobility, around);
 }
 
@@ -207,7 +195,7 @@ void Tension::close_rims(TensionTile& t, const Active& active) const {
     for (std::size_t i = 0; i < active.links.size(); ++i) {
         const std::uint32_t other = in_set(place_beyond(active, i));
         const auto there = static_cast<std::size_t>(field_of(active.links[i].other_texel));
-        if (other != kNone && !(tiles_[other]->mobility[there] > 0)) t.inner[active.links[i].texel] = 0;
+        if (other != kNone && !(tiles_[other].mobility[there] > 0)) t.inner[active.links[i].texel] = 0;
     }
 }
 
@@ -219,11 +207,11 @@ void Tension::link_over_seams(TensionTile& t, const Active& active) const {
         if (other == kNone) continue;
         const auto here = static_cast<std::size_t>(field_of(l.texel)),
                    there = static_cast<std::size_t>(field_of(l.other_texel));
-        const float m0 = t.mobility[here], m1 = tiles_[other]->mobility[there];
+        const float m0 = t.mobility[here], m1 = tiles_[other].mobility[there];
         if (!(m0 > 0 && m1 > 0)) continue;
         t.links.push_back(
             {other, l.texel, l.other_texel, l.weight, l.weight * (0.5f * (m0 + m1)), active.link_areas[i]});
-        t.grid.e[l.texel] += l.weight * (t.w[here] - tiles_[other]->w[there]) * t.grid.inverse[l.texel];
+        t.grid.e[l.texel] += l.weight * (t.w[here] - tiles_[other].w[there]) * t.grid.inverse[l.texel];
     }
 }
 
@@ -233,7 +221,7 @@ void Tension::exchange(TensionTile& tile) {
     std::array<const float*, 9> v{}, p{};
     for (std::size_t i = 0; i < 9; ++i)
         if (tile.around[i] != kNone) {
-            const Grid<N>& other = tiles_[tile.around[i]]->template of<N>();
+            const Grid<N>& other = tiles_[tile.around[i]].template of<N>();
             v[i] = other.v.data();
             p[i] = other.p.data();
         }
@@ -250,7 +238,7 @@ void Tension::exchange(TensionTile& tile) {
     for (const TensionLink& l : tile.links) {
         const auto i = static_cast<std::size_t>(line(l.texel) * N + column(l.texel));
         const auto k = static_cast<std::size_t>(Grid<N>::at(column(l.other_texel), line(l.other_texel)));
-        const Grid<N>& other = tiles_[l.other]->template of<N>();
+        const Grid<N>& other = tiles_[l.other].template of<N>();
         const float part = g.inverse[i] / kPart;
         g.beyond_v[i] += l.conductance * part * other.v[k];
         g.beyond_p[i] += l.mobility * part * other.p[k];

@@ -8,6 +8,7 @@
 
 #include "ink/film/film_list.h"
 #include "ink/film/film_worker.h"
+#include "ink/film/tile_set.h"
 
 /// \file
 /// Levelling of the wet film by surface tension. Internal to the wet film (film.h).
@@ -147,15 +148,15 @@ class Tension {
     Solved solve(const TileList& tiles, std::span<const Sources> sources, double dt);
     /// Of a place in the list; null: not among those tiles.
     const TensionTile* tile(std::uint32_t place) const {
-        return set_of_[place] == kNone ? nullptr : tiles_[set_of_[place]].get();
+        const std::uint32_t i = tiles_.index(place);
+        return i == kNone ? nullptr : &tiles_[i];
     }
     /// As `wet::cross_seams`.
     void cross_seams(std::uint32_t place, std::span<const Sources> sources, int pigments, float grip, Work& work,
                      Crossing& crossing) const;
 
   private:
-    std::vector<std::unique_ptr<TensionTile>> tiles_, spare_;
-    std::vector<std::uint32_t> set_of_;  ///< [list]
+    TileSet<TensionTile> tiles_;
     std::vector<std::uint32_t> places_;  ///< chosen ones, ascending
     std::vector<std::int8_t> steep_;     ///< [n_slots] whether beads may run; −1: not looked up
     FilmParams params_;
@@ -168,7 +169,7 @@ class Tension {
     void take_mobility(TensionTile& t) const;
     void close_rims(TensionTile& t, const Active& active) const;
     void link_over_seams(TensionTile& t, const Active& active) const;
-    std::uint32_t in_set(std::uint32_t place) const { return place == kNone ? kNone : set_of_[place]; }
+    std::uint32_t in_set(std::uint32_t place) const { return tiles_.index(place); }
 
     template <int N>
     void cycle();
