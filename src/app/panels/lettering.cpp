@@ -117,6 +117,16 @@ void direction_row(Ui& ui, writer::Direction& direction) {
     ImGui::PopStyleVar();
 }
 
+/// Moves the window into the view, which may have changed.
+void keep_in_view(const ViewState& view, float pad) {
+    const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    const auto left = static_cast<float>(view.area.x) + pad, top = static_cast<float>(view.area.y) + pad;
+    const float right = left + static_cast<float>(view.area.width) - 2 * pad - size.x,
+                low = top + static_cast<float>(view.area.height) - 2 * pad - ImGui::GetFrameHeight();
+    const ImVec2 kept(std::clamp(at.x, left, std::max(left, right)), std::clamp(at.y, top, std::max(top, low)));
+    if (kept.x != at.x || kept.y != at.y) ImGui::SetWindowPos(kept);
+}
+
 }  // namespace
 
 void lettering_panel(Session& s) {
@@ -133,6 +143,7 @@ void lettering_panel(Session& s) {
     ImGui::Begin((std::string(ui.tr("Write")) + "###lettering").c_str(), nullptr,
                  ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
                      ImGuiWindowFlags_AlwaysAutoResize);
+    keep_in_view(s.view, pad);
     ImGui::BeginDisabled(s.reported.file.viewing);
     text_field(ui, l, ImGui::IsWindowAppearing() && l.wanted.text.empty() && !s.reported.file.viewing);
     fault_line(ui, l.fault.empty() ? s.tools.place_fault : l.fault);
