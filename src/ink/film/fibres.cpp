@@ -121,11 +121,11 @@ EaseOfFlow::EaseOfFlow(const FlowMedium& medium, double texel_size)
       of_fibres_(std::sqrt(medium.fibrous)),
       fibres_(texel_size) {}
 
-double EaseOfFlow::root(const Vec3& position, const Vec3& normal, double power) {
+double EaseOfFlow::root_at(const Vec3& position, const Vec3& normal) {
     if (!(unevenness_ > 0)) return 1;
     const double noise =
         of_clouds_ * flocs(position) + (of_fibres_ > 0 ? of_fibres_ * fibres_.at(position, normal) : 0);
-    return exponential(power * unevenness_ * std::clamp(noise, kLeastEase, kMostEase));  // the fastest sets the steps
+    return exponential(0.5 * unevenness_ * std::clamp(noise, kLeastEase, kMostEase));  // the fastest sets the steps
 }
 
 }  // namespace tuft::ink::wet

@@ -48,15 +48,12 @@ class EaseOfFlow {
   public:
     EaseOfFlow(const FlowMedium& medium, double texel_size);
 
-    double at(const Vec3& position, const Vec3& normal) { return root(position, normal, 1); }
-    /// Its root, which each end of a face contributes.
-    double root_at(const Vec3& position, const Vec3& normal) { return root(position, normal, 0.5); }
+    /// Returns its root, which each end of a face contributes.
+    double root_at(const Vec3& position, const Vec3& normal);
 
   private:
     double unevenness_, of_clouds_, of_fibres_;
     Fibres fibres_;
-
-    double root(const Vec3& position, const Vec3& normal, double power);
 };
 
 /// Smooth noise of the place, −1 to 1, over `length`, metres.

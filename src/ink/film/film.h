@@ -28,7 +28,7 @@ struct FilmParams {
     double rim_evaporation = 0;     ///< film units · m per second, additional, per metre of rim
     double rim_depth = 1;           ///< film units: rims are thinner than this
     double stain = 0;               ///< fraction of a drying film that soaks into bare substrate
-    double unevenness = 0;          ///< rms of ln of the relative mobility over the surface; 0: even
+    double unevenness = 0;          ///< rms of ln of the relative mobility over the ground; 0: even
     Vec3 down{0};                   ///< unit, direction of gravity; zero: none
     double retained = 2;            ///< w_r: film units not moved by gravity or surface tension
     double levelling = 1e-8;        ///< L, m²/s per film unit above `retained`: spreading onto dry surface
@@ -73,9 +73,9 @@ struct FilmReport {
 /// Pores. Lucas–Washburn: a front fed from full pores is at √(k t), k = r σ cos θ / (2 η) (`washburn`). In steps of
 /// their own, stable for any length (seepage.h).
 ///
-/// Symbols. M = w + s (1 − retention): fibres retain pigment from seeping liquid, so water runs ahead of the ink
-/// and a line has a dark core. ↑: upwind, of the texel the liquid comes from. H = max(T, grip): pigment under thin
-/// liquid does not move, so a drop dries as it is and its pigments do not collect in its middle.
+/// Symbols. M = w + s (1 − retention): fibres retain pigment from seeping liquid, of thin ink less (seepage.h), so
+/// water runs ahead and lines have dark cores. ↑: upwind, of the texel the liquid comes from. H = max(T, grip): pigment
+/// under thin liquid does not move, so a drop dries as it is and its pigments do not collect in its middle.
 ///
 /// Levelling. Surface tension levels ripples of the liquid on the surface by the law of thin films, to which the above
 /// adds what thin-film theory does not know (fibres, roughness):
@@ -96,8 +96,8 @@ struct FilmReport {
 /// 40 % over about a millimetre, since surfaces are not clean. With a direction of gravity, contact lines preserve
 /// mounds (L = 0), and the excess runs down in beads (drips.h), at most 256 at once. The rim evaporates faster, by
 /// `rim_evaporation` |∇ min(T, rim_depth)| / rim_depth: the same per metre of rim for any texel size. This draws
-/// liquid and pigment there: dark edges. A texel without liquid is closed (drying.h). With `unevenness` D varies
-/// over about a millimetre, like fibres and pores, and fronts are crinkled.
+/// liquid and pigment there: dark edges. A texel without liquid is closed (drying.h). With `unevenness` D and D₀ vary
+/// in clouds of about a millimetre and, as far as pores retain pigments, along fibres (fibres.h): fronts feather.
 ///
 /// Seams. Beside seams, texels are cells that tile the surface together with those of the other chart
 /// (border_cells.h). The flux through a face is one number for both sides, over seams too, so each amount is

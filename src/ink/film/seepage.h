@@ -86,7 +86,11 @@ void seepage_flow(Work& work, const SeepTile& tile, const Geometry& g, int last,
 /// keep amounts within their bounds for steps (n² + 3 n) / 4 times as long as one stage. Stages are sums of what went
 /// through faces and surface, so amounts are conserved to rounding. A step with a negative amount is halved.
 ///
-/// Pigments go with the liquid that leaves a texel, at most all of them in one step.
+/// Pigments go with the liquid that leaves a texel, at most all of them in one step. Pores retain from it the fraction
+/// retention · c / (c + 0.1), c pigments over liquid (both film units): grains of thick ink catch each other between
+/// fibres, those of thin ink go with its water. A model, without a measurement behind the 0.1.
+///
+/// Tiles that no liquid has reached are left out of a stage.
 class Seepage {
   public:
     void start(const FilmParams& params) { params_ = params; }
