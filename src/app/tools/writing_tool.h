@@ -28,6 +28,7 @@ class WritingTool {
         std::vector<std::vector<Vec3>> guides = {};  ///< of what it snapped to
     };
     std::optional<Spot> spot(const Event* cursor) const;
+    /// Where a place is typed. Shows a message and returns nothing for one that is not finite or far beside the model.
     std::optional<Spot> typed_spot() const;
     stroke::Placement placement_at(const Spot& spot) const;
     void place(const Spot& spot);
