@@ -242,6 +242,25 @@ Painted paint_strokes(const std::vector<stroke::JournalEntry>& strokes, stroke::
     return out;
 }
 
+bool is_masked_or_erases(const stroke::JournalEntry& entry) {
+    if (const auto* s = entry.as<stroke::PaintStroke>()) return s->mask != 0 || s->erases();
+    const auto* fill = entry.as<stroke::Fill>();
+    return fill && fill->mask != 0;
+}
+
+// A note for a drawing all of which lies on locked parts. Masks take ink away, too: with them nothing is said.
+void note_locked(const Painted& painted, const std::vector<stroke::JournalEntry>& strokes,
+                 const stroke::PartTable& parts, Console& console) {
+    const bool touched = painted.areas > 0 || std::ranges::any_of(painted.reports, &stroke::StrokeReport::touched);
+    if (painted.ink > 0 || !touched || std::ranges::any_of(strokes, is_masked_or_erases)) return;
+    std::vector<std::string> names;
+    for (const stroke::Part& part : parts.parts)
+        if (part.locked && !part.hidden) names.push_back(part.name);
+    if (names.empty()) return;
+    console.note(fmt::format("warning: all that the drawing meets is locked, so it leaves no ink (locked: {})",
+                             fmt::join(names, ", ")));
+}
+
 void print_painted(const Painted& painted, const stroke::Model& model, const Paint& a) {
     const auto& [reports, done, areas, ink, stamps, prepared, first_stamp, seconds] = painted;
     const std::string painted_areas = areas == 0 ? "" : counted(areas, "area");
@@ -330,6 +349,7 @@ int paint(const Paint& a, const StrokeSource& source) {
     painted.prepared = prepared;
     note_misses(painted.reports, painted.done, console);
     note_dry(painted.reports, console);
+    note_locked(painted, strokes, painting.parts().table(), console);
     note_inside(painted.reports, painted.done, model.mesh->bounds, console);
     show_layers(painting, a.view.layers);
     write_outputs(outputs, painting, console);

@@ -22,19 +22,18 @@ namespace {
 // Surfaces with more of the normal along z lie: they are looked at from above, not from where they face.
 constexpr double kLies = 0.8;
 
-void note_widths(const stroke::WidthMismatch& m, Console& console) {
+void note_widths(const stroke::WidthMismatch& m, bool fitted, Console& console) {
     if (m.brush.empty()) return;
     const std::string asked = m.most > m.least
                                   ? fmt::format("{:.3g} to {:.3g}", m.least / kMillimetre, m.most / kMillimetre)
                                   : fmt::format("{:.3g}", m.most / kMillimetre);
-    console.note(
-        fmt::format("the drawing has lines {} mm wide; {} draws {:.2g} to {:.2g} mm (without --brush, or with "
-                    "--fit-brush, it is made to fit)",
-                    asked, m.brush, m.thinnest / kMillimetre, m.widest / kMillimetre));
+    console.note(fmt::format(
+        "the drawing has lines {} mm wide that {} does not draw: its lines are {:.2g} to {:.2g} mm wide ({})", asked,
+        m.brush, m.thinnest / kMillimetre, m.widest / kMillimetre,
+        fitted ? "no size of it fits; another --brush may" : "--fit-brush takes a size of it that fits"));
 }
 
-constexpr double kTooLarge = 3;      // diagonals of the model
-constexpr double kFarBeside = 0.05;  // of the model's diagonal: more than a place read off a drawing is out by
+constexpr double kTooLarge = 3;  // diagonals of the model
 
 /// A point for the middle of a drawing, and the normal that it is laid out across.
 struct Spot {
@@ -54,7 +53,7 @@ Spot named_spot(const stroke::Model& model, const Paint& a, Console& console) {
                         a.place_mm[0], a.place_mm[1], a.place_mm[2], inside / kMillimetre, at->position.x / kMillimetre,
                         at->position.y / kMillimetre, at->position.z / kMillimetre));
     else if (const double beside = glm::distance(place, Vec3(at->position));
-             beside > kFarBeside * model.mesh->bounds.diagonal())
+             beside > stroke::kFarBeside * model.mesh->bounds.diagonal())
         console.note(
             fmt::format("warning: --place {:.4g},{:.4g},{:.4g} lies {:.1f} mm beside the model; the drawing goes to "
                         "the nearest place of its surface, {:.1f},{:.1f},{:.1f} mm",
@@ -198,7 +197,7 @@ std::optional<PlacedDrawing> place_strokes(std::vector<stroke::JournalEntry>& st
     const std::optional<PlacedDrawing> placed = place_on_model(strokes, model, a, fit, widths, console);
     stroke::fill_wide_lines(strokes, a.wide_lines_mm * kMillimetre, edges_of(a));
     stroke::redip_long_lines(strokes, fit, widths);
-    note_widths(stroke::press_to_widths(strokes, widths), console);
+    note_widths(stroke::press_to_widths(strokes, widths), fit.fit, console);
     return placed;
 }
 

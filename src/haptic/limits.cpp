@@ -62,9 +62,9 @@ std::span<const DeviceLimits> device_presets() {
 const DeviceLimits& device_preset(std::string_view name) {
     for (const DeviceLimits& preset : kPresets)
         if (preset.name == name) return preset;
-    std::vector<std::string> names;
-    for (const DeviceLimits& preset : kPresets) names.emplace_back(preset.name);
-    throw Error(Message("unknown device '{}'{}", name, did_you_mean(nearest_name(name, names))));
+    std::string names;
+    for (const DeviceLimits& preset : kPresets) names += (names.empty() ? "" : ", ") + std::string(preset.name);
+    throw Error(Message("unknown device '{}'; there are: {}", name, names));
 }
 
 double coupling_for_delay(const DeviceLimits& limits, double delay) {

@@ -256,5 +256,32 @@ TEST_F(PaintThreadTest, PosesThatComeFasterThanTheirInkArePaintedAsTheHandMadeTh
     for (std::size_t i = 0; i < samples.size(); ++i) EXPECT_EQ(samples[i].time, poses[i].time);
 }
 
+TEST(PartChanges, SayWhatAnEditChangesEachKindOnce) {
+    using What = PartChange::What;
+    const ink::Substrate glass = ink::load_substrate("glass"), clay = ink::load_substrate("clay");
+    stroke::PartTable table;
+    const auto changes = [&](const stroke::PartEdit& edit) {
+        std::vector<PartChange> all = part_changes(table, edit);
+        stroke::apply(table, edit);
+        return all;
+    };
+    using Changes = std::vector<PartChange>;
+    EXPECT_EQ(changes(stroke::hidden_parts(table, {"door", "pane"}, true)),
+              (Changes{{What::hidden, "", {"door", "pane"}}}));
+    EXPECT_EQ(changes(stroke::parts_of_substrate(table, {"pane"}, glass)),
+              (Changes{{What::made_of, "glass", {"pane"}}}))
+        << "that it is hidden is no change";
+    EXPECT_EQ(changes(stroke::parts_of_substrate(table, {"pane"}, glass)), Changes{});
+    EXPECT_EQ(changes(stroke::isolated_parts(table, {"body", "door", "pane"}, {"door"})),
+              (Changes{{What::hidden, "", {"body"}}, {What::shown, "", {"door"}}}));
+    EXPECT_EQ(changes(stroke::locked_parts(table, {"body"}, true)), (Changes{{What::locked, "", {"body"}}}));
+    stroke::PartEdit both;
+    both.parts = {{.name = "body", .hidden = false, .locked = false, .substrate = clay}, {.name = "pane"}};
+    EXPECT_EQ(changes(both), (Changes{{What::shown, "", {"body", "pane"}},
+                                      {What::unlocked, "", {"body"}},
+                                      {What::made_of, "clay", {"body"}},
+                                      {What::as_model, "", {"pane"}}}));
+}
+
 }  // namespace
 }  // namespace tuft::app

@@ -34,6 +34,8 @@ TEST_F(Device, WrongArgumentsAreOneLine) {
         EXPECT_EQ(ran.error_lines(), 1) << arguments << ran.err;
         EXPECT_EQ(ran.out, "") << arguments;
     }
+    const std::string unknown = tuft("device test --simulate wand").err;
+    for (const char* known : {"touch", "omega.6"}) EXPECT_NE(unknown.find(known), std::string::npos) << unknown;
 }
 
 TEST_F(Device, TestPrintsTheFiguresOfASimulatedArm) {

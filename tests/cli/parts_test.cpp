@@ -66,7 +66,10 @@ TEST_F(PartsOfAProject, HiddenOnesArePaintedThroughAndStayInTheProject) {
 }
 
 TEST_F(PartsOfAProject, LockedOnesGetNoInkAndOnlyLeavesTheOthersOut) {
-    ASSERT_EQ(paint("--lock-parts pane").status, 0);
+    const Ran locked = paint("--lock-parts pane");
+    ASSERT_EQ(locked.status, 0);
+    EXPECT_NE(locked.err.find("all that the drawing meets is locked"), std::string::npos) << locked.err;
+    EXPECT_NE(locked.err.find("(locked: pane)"), std::string::npos) << locked.err;
     EXPECT_EQ(ink_at("4"), 0);
     const std::string before = replayed();
     ASSERT_EQ(tuft("paint " + path("p.tuft") + " --strokes " + path("s.inkml") + " --mapping project --only-parts body")

@@ -118,6 +118,22 @@ TEST_F(Place, TheWidthAskedForIsThatOfTheInk) {
         EXPECT_NEAR(own.size(axis), asked.size(axis), 1e-6) << "the scale is 1 but for rounding";
 }
 
+// With --brush the size stays, and the way out is named; with --fit-brush it was tried already.
+TEST_F(Place, LinesThatABrushCannotDrawAreReportedWithWhatHelps) {
+    write("box.obj", box(false));
+    write("d.svg",
+          "<svg xmlns='http://www.w3.org/2000/svg' width='30mm' height='10mm' viewBox='0 0 30 10'>"
+          "<path d='M1,5 H29' fill='none' stroke='#000' stroke-width='0.001'/></svg>");
+    const std::string paint = "paint " + path("box.obj") +
+                              " --unit mm --up z --atlas-size 256 --areas brush --strokes " + path("d.svg") +
+                              " --place-width 28 --brush goat-large ";
+    const std::string chosen = tuft(paint).err, fitted = tuft(paint + "--fit-brush").err;
+    EXPECT_NE(chosen.find("goat-large does not draw"), std::string::npos) << chosen;
+    EXPECT_NE(chosen.find("--fit-brush takes a size of it that fits"), std::string::npos) << chosen;
+    EXPECT_NE(fitted.find("does not draw"), std::string::npos) << fitted;
+    EXPECT_NE(fitted.find("no size of it fits"), std::string::npos) << fitted;
+}
+
 TEST_F(Place, ADrawingFarLargerThanTheModelIsReported) {
     write("box.obj", box(false));  // 108 mm across
     write("lines.inkml", lines(0, 0, 10));

@@ -156,6 +156,8 @@ void StrokePainter::paint_placed(std::vector<stroke::JournalEntry> entries, cons
     context_.history.undone.clear();
     context_.history.done.push_back({});
     stroke::EntryGroup group;
+    double ink = 0;
+    bool touched = false;
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (!shown("", static_cast<double>(i) / static_cast<double>(all.size()))) break;
         context_.work.autosave.prepare(*context_.work.document, stroke::brush_of(all[i]), stroke::ink_of(all[i]));
@@ -167,11 +169,17 @@ void StrokePainter::paint_placed(std::vector<stroke::JournalEntry> entries, cons
         if (i % in_group == 0 && !command.name.empty())
             group = {context_.work.document->journal().next_group_id(), command.name};
         all[i].group = group;
-        context_.work.document->paint(std::move(all[i]));
+        const stroke::StrokeReport report = context_.work.document->paint(std::move(all[i]));
+        ink += report.ink_given;
+        touched = touched || report.touched();
         context_.work.autosave.add(context_.work.document->journal().entries().back());
         ++context_.history.done.back().made;
         context_.publisher.publish(true);
     }
+    const auto& parts = context_.work.document->parts().table().parts;
+    if (ink == 0 && touched && command.mask == 0 && context_.history.done.back().made == all.size() &&
+        std::ranges::any_of(parts, [](const stroke::Part& part) { return part.locked && !part.hidden; }))
+        context_.outbox.report("The drawing leaves no ink: what it meets is locked");
     if (context_.history.done.back().made == 0) context_.history.done.pop_back();
     context_.publisher.publish(true);
 }

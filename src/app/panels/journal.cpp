@@ -239,6 +239,38 @@ const char* layer_change(stroke::LayerChange change) {
     return "Layer";
 }
 
+std::string listed(const Ui& ui, const std::vector<std::string>& names) {
+    constexpr std::size_t kMostNames = 6;
+    std::string list;
+    for (std::size_t i = 0; i < std::min(names.size(), kMostNames); ++i) list += (i ? ", " : "") + names[i];
+    return names.size() > kMostNames ? ui.sentence(Message("{} and {} more", list, names.size() - kMostNames)) : list;
+}
+
+std::string part_words(const Ui& ui, const PartChange& change) {
+    const std::string names = listed(ui, change.names);
+    switch (change.what) {
+        case PartChange::What::hidden:
+            return ui.sentence(Message("hidden: {}", names));
+        case PartChange::What::shown:
+            return ui.sentence(Message("shown: {}", names));
+        case PartChange::What::locked:
+            return ui.sentence(Message("locked: {}", names));
+        case PartChange::What::unlocked:
+            return ui.sentence(Message("unlocked: {}", names));
+        case PartChange::What::made_of:
+            return ui.sentence(Message("made of {}: {}", ui.title(change.substrate), names));
+        case PartChange::What::as_model:
+            return ui.sentence(Message("made of the same as the model: {}", names));
+    }
+    return names;
+}
+
+std::string part_words(const Ui& ui, const std::vector<PartChange>& changes) {
+    std::string words;
+    for (const PartChange& change : changes) words += (words.empty() ? "" : "; ") + part_words(ui, change);
+    return words;
+}
+
 RowText text_of(const JournalParts& s, const StrokeLine& line, std::size_t number) {
     static const char* actions[] = {"",     "Dip",  "Rinse", "Comb", "Dry",  "Layer",
                                     "Mask", "Fill", "Wipe",  "Wash", "Parts"};
@@ -252,6 +284,7 @@ RowText text_of(const JournalParts& s, const StrokeLine& line, std::size_t numbe
     else
         title += length + (line.erases ? std::string("   ") + s.ui.tr("erased") : std::string());
     if (line.action == stroke::EntryKind::mask) return {title, mask_title(s.ui, line.label)};
+    if (line.action == stroke::EntryKind::part) return {title, part_words(s.ui, line.part_changes)};
     if (stroke::keeps_texels(line.action)) return {title, line.change ? layer_title(s.ui, line.label) : line.label};
     const char* between = line.ink.empty() || line.brush.empty() ? "" : " \xc2\xb7 ";
     return {title, s.ui.title(line.brush) + between + s.ui.tr(line.ink.c_str())};

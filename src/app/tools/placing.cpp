@@ -8,7 +8,9 @@
 #include "app/session/top_dialog.h"
 #include "app/tools/aim.h"
 #include "app/view/visibility.h"
+#include "core/geometry/bounds.h"
 #include "core/text/units.h"
+#include "stroke/drawing/drawing.h"
 
 namespace tuft::app {
 namespace {
@@ -53,10 +55,20 @@ std::optional<PlacingSpot> spot_at(const Session& s, const Event* cursor) {
     return spot;
 }
 
-std::optional<PlacingSpot> typed_spot(const Session& s) {
+std::optional<PlacingSpot> typed_spot(Session& s) {
     const auto& mm = s.tools.place_mm;
-    const auto on = s.paint_thread->surface().closest_point(kMillimetre * Vec3(mm[0], mm[1], mm[2]));
+    const Vec3 place = kMillimetre * Vec3(mm[0], mm[1], mm[2]);
+    if (!within(place)) {
+        show_message(s.status, "That place is no three numbers within 10 km; nothing is placed");
+        return std::nullopt;
+    }
+    const auto on = s.paint_thread->surface().closest_point(place);
     if (!on) return std::nullopt;
+    if (on->distance > stroke::kFarBeside * s.paint_thread->surface().mesh().bounds.diagonal()) {
+        show_message(s.status, Message("That place lies {} mm beside the model; nothing is placed",
+                                       std::lround(on->distance / kMillimetre)));
+        return std::nullopt;
+    }
     return PlacingSpot{on->position, on->normal, -camera_of(s).forward};
 }
 

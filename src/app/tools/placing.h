@@ -19,8 +19,9 @@ struct PlacingSpot {
 
 /// Returns the spot under the cursor, snapped where that is on; nothing off the model and under a dialog.
 std::optional<PlacingSpot> spot_at(const Session& session, const Event* cursor);
-/// Returns the spot nearest to the place that was typed.
-std::optional<PlacingSpot> typed_spot(const Session& session);
+/// Returns the spot nearest to the place that was typed. Shows a message and returns nothing for one that is not finite
+/// or far beside the model.
+std::optional<PlacingSpot> typed_spot(Session& session);
 
 /// Shows a place in the fields, metres.
 void show_place(ToolState& tools, const Vec3& at);

@@ -4,11 +4,14 @@
 #include <chrono>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <set>
+#include <span>
 
 #include "ink/composite/match.h"
 #include "ink/spectra/kubelka_munk.h"
 #include "io/project/attachments.h"
+#include "stroke/journal/tables.h"
 #include "stroke/session/session.h"
 
 namespace tuft::app {
@@ -87,7 +90,15 @@ void Publisher::update_lines() {
            lines_[same].hidden == strokes[same].hidden && lines_[same].group == strokes[same].group)
         ++same;
     lines_.resize(same);
-    for (; same < strokes.size(); ++same) lines_.push_back(stroke_line(strokes[same]));
+    std::optional<stroke::PartTable> parts;  // before the entry
+    for (; same < strokes.size(); ++same) {
+        lines_.push_back(stroke_line(strokes[same]));
+        const auto* edit = strokes[same].as<stroke::PartEdit>();
+        if (!edit) continue;
+        if (!parts) parts = stroke::parts_after(std::span(strokes).first(same));
+        lines_.back().part_changes = part_changes(*parts, *edit);
+        stroke::apply(*parts, *edit);
+    }
 }
 
 // The mixture in the brush last painted with, for its picture.

@@ -4,6 +4,30 @@
 
 namespace tuft::app {
 
+std::vector<PartChange> part_changes(const stroke::PartTable& before, const stroke::PartEdit& edit) {
+    using What = PartChange::What;
+    std::vector<PartChange> changes;
+    const auto add = [&](What what, const std::string& name, const std::string& substrate = {}) {
+        const auto same = std::ranges::find_if(
+            changes, [&](const PartChange& c) { return c.what == what && c.substrate == substrate; });
+        PartChange& change = same != changes.end() ? *same : changes.emplace_back(PartChange{what, substrate, {}});
+        change.names.push_back(name);
+    };
+    for (const stroke::Part& now : edit.parts) {
+        const stroke::Part was = before.state_of(now.name);
+        if (now.hidden != was.hidden) add(now.hidden ? What::hidden : What::shown, now.name);
+        if (now.locked != was.locked) add(now.locked ? What::locked : What::unlocked, now.name);
+        stroke::Part remade = was;
+        remade.substrate = now.substrate;
+        if (remade == was) continue;
+        if (now.substrate)
+            add(What::made_of, now.name, now.substrate->name);
+        else
+            add(What::as_model, now.name);
+    }
+    return changes;
+}
+
 StrokeLine stroke_line(const stroke::JournalEntry& entry) {
     const stroke::PaintStroke* stroke = entry.as<stroke::PaintStroke>();
     StrokeLine line{.id = entry.id,

@@ -20,11 +20,22 @@
 /// Updates from the paint thread to the window. Plain data.
 namespace tuft::app {
 
+/// What an entry of the journal changes for some parts of the model.
+struct PartChange {
+    enum class What { hidden, shown, locked, unlocked, made_of, as_model };
+    What what = What::hidden;
+    std::string substrate;  ///< of `made_of`
+    std::vector<std::string> names;
+
+    bool operator==(const PartChange&) const = default;
+};
+
 /// A journal entry in the list.
 struct StrokeLine {
     std::uint64_t id = 0;
     stroke::EntryKind action = stroke::EntryKind::stroke;
     std::optional<stroke::LayerChange> change;  ///< of a layer
+    std::vector<PartChange> part_changes;       ///< of parts
     std::string brush, ink, label;
     stroke::EntryGroup group;
     bool hidden = false, erases = false, on_palette = false;
@@ -124,5 +135,7 @@ struct Update {
 
 /// Returns the list line of an entry.
 StrokeLine stroke_line(const stroke::JournalEntry& stroke);
+/// Returns what an edit changes in the parts of `before`, each kind of change once, in the order of the edit.
+std::vector<PartChange> part_changes(const stroke::PartTable& before, const stroke::PartEdit& edit);
 
 }  // namespace tuft::app

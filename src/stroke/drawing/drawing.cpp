@@ -204,7 +204,10 @@ void fill_wide_lines(std::vector<JournalEntry>& entries, double wide, AreaEdges 
         if (at == drawings.end()) at = drawings.insert(at, {.placement = placement});
         for (const auto& ring : rings)
             for (const Vec2& p : ring) at->low = glm::min(at->low, p), at->high = glm::max(at->high, p);
+        std::vector<Vec2> line;
+        for (const StrokeSample& p : s->trace.samples) line.emplace_back(p.position);
         FlatArea area{.rings = std::move(rings),
+                      .lines = {std::move(line)},
                       .placement = placement,
                       .placed = true,
                       .edges = edges,
@@ -258,7 +261,7 @@ void redip_long_lines(std::vector<JournalEntry>& entries, const BrushFit& fit, W
 }
 
 WidthMismatch press_to_widths(std::vector<JournalEntry>& entries, WidthTables& tables) {
-    WidthMismatch mismatch{.least = 1e30};
+    WidthMismatch mismatch;
     std::vector<PaintStroke*> drawn;
     for (JournalEntry& entry : entries) {
         PaintStroke* s = entry.as<PaintStroke>();
@@ -268,6 +271,7 @@ WidthMismatch press_to_widths(std::vector<JournalEntry>& entries, WidthTables& t
         draw_to_width(s->trace, widths);
         drawn.push_back(s);
         if (width >= widths.least() && width <= widths.most()) continue;
+        if (s->brush != mismatch.brush) mismatch = {.brush = s->brush, .least = width, .most = width};
         mismatch = {s->brush, std::min(mismatch.least, width), std::max(mismatch.most, width), widths.least(),
                     widths.most()};
     }

@@ -105,10 +105,13 @@ void redip_long_lines(std::vector<JournalEntry>& entries, const BrushFit& fit, W
 void choose_brushes(std::vector<JournalEntry>& entries, std::span<StrokeSamples* const> drawing, double scale,
                     double extent, const BrushFit& fit, WidthTables& widths);
 
+/// A place farther beside the model than this part of its box diagonal is a mistake, not a rounding of its numbers.
+inline constexpr double kFarBeside = 0.05;
+
 /// Line widths that a brush cannot draw.
 struct WidthMismatch {
     std::string brush;                ///< the last such brush; empty: all widths can be drawn
-    double least = 0, most = 0;       ///< requested, metres
+    double least = 0, most = 0;       ///< of the lines that it cannot draw, metres
     double thinnest = 0, widest = 0;  ///< of this brush, metres
 };
 
