@@ -36,6 +36,7 @@ struct FillResult;
 struct HandPath;
 class PathAhead;
 class PlanScratchPool;
+struct SessionInput;
 struct SessionResult;
 class StrokeSession;
 class TileReach;
@@ -159,6 +160,7 @@ class Document {
     std::vector<BatchStroke> plan_batch(std::span<JournalEntry> entries, const EntrySteps& steps);
     bool plan_stroke(BatchStroke& stroke);
     void plan_path(BatchStroke& planned) const;
+    void start_session(BatchStroke& planned) const;
     void paint_step(BatchStroke& stroke, std::size_t step, const ProgressFn& progress) const;
     void paint_batch(std::vector<BatchStroke>& batch, const ProgressFn& progress);
     std::size_t append_batch(std::vector<BatchStroke>& batch, const EntrySteps& steps);
@@ -166,10 +168,12 @@ class Document {
 
     HandPath path_of(const PaintStroke& stroke);
     std::unique_ptr<PathAhead> plan_path_ahead(const JournalEntry& entry);
-    std::unique_ptr<StrokeSession> make_session(PaintStroke stroke, const std::vector<TileUse>* plan = nullptr);
+    std::unique_ptr<StrokeSession> make_session(PaintStroke stroke);
+    SessionInput session_input(PaintStroke stroke, const std::vector<TileUse>* plan);
     StrokeReport finish_session(std::uint64_t id);
     StrokeReport put_down(std::uint64_t id, const PaintStroke& stroke, SessionResult result, std::size_t n_pigments);
-    BrushInHand take_up(const PaintStroke& stroke);
+    BrushStart brush_start(const PaintStroke& stroke);
+    BrushInHand take_up(const PaintStroke& stroke, const BrushStart& start) const;
     WetFilmInUse wet_film_for(const PaintStroke& stroke, const PaintTarget& target);
 
     const mesh::SurfaceQuery& surface() const { return *parts_.surface(); }

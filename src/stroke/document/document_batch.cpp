@@ -13,6 +13,7 @@
 #include "stroke/document/paint_path.h"
 #include "stroke/document/path_ahead.h"
 #include "stroke/document/tile_reach.h"
+#include "stroke/session/session.h"
 
 /// Many entries in turn. A stroke that begins with a fresh brush depends on the model and on the ink in the tiles it
 /// uses, and changes nothing else. So the strokes of a batch are painted side by side, part by part of their paths: a
@@ -31,6 +32,8 @@ struct Document::BatchStroke {
     double spacing = 0;              // metres between the poses of the resampled path
     std::vector<std::size_t> parts;  // ends of the parts of the path, in poses
     TilePlan tiles;
+    BrushStart start;
+    std::optional<SessionInput> input;  // until the session is made
     std::unique_ptr<StrokeSession> session;
     std::optional<SessionResult> result;
     std::exception_ptr fault;
@@ -130,7 +133,11 @@ bool Document::plan_stroke(BatchStroke& planned) {
     planned.preset = &preset;
     planned.spacing =
         pose_spacing(stroke, stroke.erases() ? ink::Ink{} : materials_.ink(stroke.ink), model_.texels.texel_size);
-    planned.session = make_session(stroke, &planned.tiles);
+    PaintStroke settled = stroke;
+    settle(settled);
+    planned.start = brush_start(settled);
+    planned.input.emplace(session_input(std::move(settled), &planned.tiles));
+    if (!stroke.erases()) planned.input->ink = materials_.ink(stroke.ink);  // a fresh brush
     planned.canvas = &layers_.canvas(stroke.layer);
     planned.n_pigments = layers_.pigments().size();
     return true;
@@ -143,7 +150,7 @@ std::vector<Document::BatchStroke> Document::plan_batch(std::span<JournalEntry> 
     std::vector<BatchStroke> batch;
     if (threads == 1 || watcher_) return batch;
     const std::size_t most = std::min(entries.size(), kStrokesPerThread * threads);
-    batch.reserve(most);  // sessions refer to the tiles of their strokes
+    batch.reserve(most);  // what sessions begin with refers to the tiles of their strokes
     std::size_t samples = 0;
     for (std::size_t i = 0; i < most && paints_beside_others(entries[i]); ++i) {
         JournalEntry& entry = entries[i];
@@ -175,6 +182,12 @@ void Document::plan_path(BatchStroke& planned) const {
     planned.parts =
         parts_of_path(poses, std::max(kLeastPart * planned.spacing, 0.5 * brush::tuft_width(*planned.preset)));
     planned.tiles = tile_reach_->tiles_at(reached_places(surface(), poses, planned.parts, *planned.preset, texel));
+}
+
+void Document::start_session(BatchStroke& planned) const {
+    planned.input->brush = take_up(planned.input->stroke, planned.start);
+    planned.session = std::make_unique<StrokeSession>(std::move(*planned.input));
+    planned.input.reset();
 }
 
 void Document::paint_step(BatchStroke& stroke, std::size_t step, const ProgressFn& progress) const {
@@ -217,6 +230,7 @@ void Document::paint_batch(std::vector<BatchStroke>& batch, const ProgressFn& pr
     run_tasks(std::vector<std::vector<std::uint32_t>>(batch.size()), [&](std::size_t i) {
         guarded(i, [&](BatchStroke& stroke) {
             report(shown_of(i), "painting", 0);
+            start_session(stroke);
             plan_path(stroke);
         });
     });

@@ -89,16 +89,19 @@ void Document::cancel() {
     forget_pigments();
 }
 
-BrushInHand Document::take_up(const PaintStroke& stroke) {
+BrushStart Document::brush_start(const PaintStroke& stroke) {
     const StrokeSettings& settings = stroke.settings;
-    const brush::Preset preset = preset_of(stroke.brush, settings.spine);
-    if (stroke.erases()) return clean_brush(preset);
-    return brushes_.take_up_for_stroke({.preset = preset,
-                                        .name = stroke.brush,
-                                        .ink = stroke.ink,
-                                        .mix = mix_of(stroke.ink),
-                                        .seed = stroke.seed,
-                                        .dip = settings.dip});
+    return {.preset = preset_of(stroke.brush, settings.spine),
+            .name = stroke.brush,
+            .ink = stroke.ink,
+            .mix = stroke.erases() ? ink::Mix{} : mix_of(stroke.ink),
+            .seed = stroke.seed,
+            .dip = settings.dip};
+}
+
+// Safe beside others while no brush is put down.
+BrushInHand Document::take_up(const PaintStroke& stroke, const BrushStart& start) const {
+    return stroke.erases() ? clean_brush(start.preset) : brushes_.take_up_for_stroke(start);
 }
 
 // An eraser lets no ink flow.
@@ -108,32 +111,39 @@ WetFilmInUse Document::wet_film_for(const PaintStroke& stroke, const PaintTarget
     return {&film_within(stroke.mask), ink::film_params(target.substrate, stroke.settings.down)};
 }
 
-// `plan`: tiles that it may use; null: all, and with them the links over the seams.
-std::unique_ptr<StrokeSession> Document::make_session(PaintStroke stroke, const TilePlan* plan) {
+std::unique_ptr<StrokeSession> Document::make_session(PaintStroke stroke) {
     settle(stroke);
-    BrushInHand brush = take_up(stroke);
-    const ink::Ink ink = stroke.erases() ? ink::Ink{} : materials_.ink(brush.dipped);
+    const BrushStart start = brush_start(stroke);
+    SessionInput input = session_input(std::move(stroke), nullptr);
+    input.brush = take_up(input.stroke, start);
+    if (!input.stroke.erases()) input.ink = materials_.ink(input.brush.dipped);
+    return std::make_unique<StrokeSession>(std::move(input));
+}
+
+// All but the brush and its ink. `plan`: tiles that the stroke may use; null: all, and with them the links over the
+// seams.
+SessionInput Document::session_input(PaintStroke stroke, const TilePlan* plan) {
     const PaintTarget target = this->target(stroke.layer, stroke.mask);
-    check_width(brush.tuft.preset, target.model.texels.texel_size);
+    check_width(materials_.brush(stroke.brush), target.model.texels.texel_size);
     WetFilmInUse wet = wet_film_for(stroke, target);
     const SeamLinksFn seams = [this, plan, on_palette = target.on_palette]() -> const atlas::SeamLinks& {
         if (plan) throw OutsideTiles();
         return on_palette ? palette_.plate().seams : film_.seams();
     };
-    return std::make_unique<StrokeSession>(SessionInput{.stroke = std::move(stroke),
-                                                        .brush = std::move(brush),
-                                                        .ink = ink,
-                                                        .model = target.model,
-                                                        .surface = target.surface,
-                                                        .substrate = target.substrate,
-                                                        .canvas = target.canvas,
-                                                        .mask = target.mask,
-                                                        .substrates = target.substrates,
-                                                        .plan = plan,
-                                                        .wet = std::move(wet),
-                                                        .scratch = *plan_scratch_,
-                                                        .seams = seams,
-                                                        .record_forces = options_.record_forces});
+    return {.stroke = std::move(stroke),
+            .brush = {},
+            .ink = {},
+            .model = target.model,
+            .surface = target.surface,
+            .substrate = target.substrate,
+            .canvas = target.canvas,
+            .mask = target.mask,
+            .substrates = target.substrates,
+            .plan = plan,
+            .wet = std::move(wet),
+            .scratch = *plan_scratch_,
+            .seams = seams,
+            .record_forces = options_.record_forces};
 }
 
 // Ends the stroke in work without a word to the journal.
