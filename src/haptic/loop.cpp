@@ -217,7 +217,7 @@ void Loop::State::run_solver() {
     with_priority += take_priority(options.solver_priority);
     prefault_stack();
     constexpr std::size_t kLargestBlock = 64 * 1024;  // bytes; a wide tuft's largest buffer takes 40 kB
-    constexpr int kBlocks = 24;                       // of each size, that a solve has in use at once, at most
+    constexpr int kBlocks = 64;                       // of each size; 24 were too few for a tuft of one spine
     fill_block_store(kLargestBlock, kBlocks);
     const std::uint64_t allocated = allocations();
     while (true) {
