@@ -39,8 +39,6 @@ struct Surface {
 struct Motion {
     Vec2 shift{0};    ///< metres
     double turn = 0;  ///< radians, counter-clockwise
-
-    bool operator==(const Motion&) const = default;
 };
 
 /// Options of `plan_stamp` and `choose_mode`.

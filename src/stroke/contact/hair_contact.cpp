@@ -212,7 +212,7 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
     else if (by_hair_)
         draw_hairs(stamp, passed, contact, motion, wetness);
     else
-        stamp.footprint = std::move(*shape.closed), stamp.plan = std::move(shape.plan);
+        stamp.footprint = std::move(*shape.closed);
     stamp.leapt = !shape.leapt.empty();
     if (options_.tones && !carried) {
         if (!motion.touching) tone_.clear();

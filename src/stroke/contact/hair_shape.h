@@ -8,7 +8,6 @@
 #include "footprint/outline/cuts.h"
 #include "footprint/outline/footprint.h"
 #include "footprint/outline/rough_edge.h"
-#include "stroke/contact/stamp.h"
 
 /// \file
 /// Where the hair touches at one pose, whatever ink it holds. `HairContact` makes stamps of it; a forecast computes it
@@ -32,7 +31,6 @@ struct HairShape {
     footprint::EdgeHair edge;                    ///< at the edge of wet hair
     Recycled<footprint::Outline> outlines;       ///< of wet hair, which closes its gaps; with `closed` only
     std::optional<footprint::Footprint> closed;  ///< footprint of wet hair, where it was computed
-    std::optional<StampPlan> plan;               ///< of `closed`
 };
 
 /// Whether hair touches, on a triangle of the model.

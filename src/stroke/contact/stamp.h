@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "footprint/outline/footprint.h"
 #include "footprint/stamp/stamp.h"
 #include "ink/exchange/contact_grid.h"
@@ -13,17 +11,10 @@
 /// texels.
 namespace tuft::stroke {
 
-/// The tiles of a footprint that moves, planned before its stamp is made.
-struct StampPlan {
-    footprint::Motion motion;
-    footprint::StampJobs jobs;
-};
-
 /// The footprint at one pose, with its motion and its ink.
 struct Stamp {
     footprint::Footprint footprint;
-    std::optional<StampPlan> plan;  ///< of the footprint as one closed patch, where it was planned ahead
-    footprint::Motion motion;       ///< since the stamp before, in the footprint's frame
+    footprint::Motion motion;  ///< since the stamp before, in the footprint's frame
     ink::DepositParams ink;
     double ds = 0;          ///< metres of travel that it stands for
     double erases = 0;      ///< strength of an eraser, which removes ink; 0: no eraser

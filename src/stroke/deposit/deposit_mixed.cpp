@@ -12,11 +12,6 @@ class MixedDeposit : public DepositModel {
     MixedDeposit(StampTarget& target, const DepositOptions& options)
         : target_(target), exposure_(target, options.stamp) {}
 
-    bool plans_ahead() const override { return true; }
-    footprint::StampJobs plan(const footprint::Footprint& footprint, const footprint::Motion& motion) const override {
-        return exposure_.plan(footprint, motion);
-    }
-
     double deposit(Stamp stamp, TuftInHand& tuft, const DepositContact& contact) override {
         ink::Reservoir& reservoir = tuft.brush.reservoir;
         exposure_.expose(stamp);

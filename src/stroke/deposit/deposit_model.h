@@ -39,13 +39,6 @@ class DepositModel {
     virtual void settle(TuftInHand& /*tuft*/, bool /*by_hair*/) {}
     /// Returns the pending ink, film·m²: given already, but still in the reservoir.
     virtual double pending() const { return 0; }
-    /// Whether stamps of closed hair may be planned by `plan` before they are made.
-    virtual bool plans_ahead() const { return false; }
-    /// Plans such a stamp. Any thread, beside others.
-    virtual footprint::StampJobs plan(const footprint::Footprint& /*footprint*/,
-                                      const footprint::Motion& /*motion*/) const {
-        return {};
-    }
     /// Number of stamps that share what is left in the tuft.
     virtual std::size_t stamps_per_batch() const { return 1; }
     /// Deposits a stamp whose motion and ink are set. Returns the ink given minus the ink taken up, film·m², as far as

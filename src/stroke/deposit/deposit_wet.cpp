@@ -40,11 +40,6 @@ class WetDeposit : public DepositModel {
 
     std::size_t stamps_per_batch() const override { return mixed_ ? 1 : StampBatch::kStamps; }
 
-    bool plans_ahead() const override { return true; }
-    footprint::StampJobs plan(const footprint::Footprint& footprint, const footprint::Motion& motion) const override {
-        return exposure_.plan(footprint, motion);
-    }
-
     double deposit(Stamp stamp, TuftInHand& tuft, const DepositContact& contact) override {
         ink::Reservoir& reservoir = tuft.brush.reservoir;
         const ink::ContactCells& cells = contact.hair.cells();

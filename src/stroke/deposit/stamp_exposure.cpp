@@ -10,10 +10,6 @@ void add(ink::NodeContents& sum, const ink::NodeContents& part) {
         for (int p = 0; p < ink::Reservoir::kPlanes; ++p) sum[node][p] += part[node][p];
 }
 
-bool same(const footprint::Motion& a, const footprint::Motion& b) {
-    return a.shift == b.shift && a.turn == b.turn;
-}
-
 // `tile`: a StampExposure::Tile.
 template <class Tile>
 ink::StampedTile stamped(const Tile& tile, const StampTarget& target, double ds) {
@@ -47,22 +43,13 @@ void StampExposure::expose_tile(Tile& tile, const Stamp& stamp, const footprint:
     for (int k = 0; k < basis.count; ++k) tile.areas[basis.node[k]] = areas[k];
 }
 
-footprint::StampJobs StampExposure::plan(const footprint::Footprint& footprint, const footprint::Motion& motion,
-                                         const footprint::StampOptions& options, footprint::StampJobs recycled) const {
-    PlanScratchPool::Lease scratch(target_.scratch());
-    return footprint::plan_stamp(target_.model().surface(), footprint, motion, options, scratch, std::move(recycled));
-}
-
-footprint::StampJobs StampExposure::plan(const footprint::Footprint& footprint, const footprint::Motion& motion) const {
-    return plan(footprint, motion, options_, {});
-}
-
-ink::NodeAreas StampExposure::expose(Stamp& stamp) {
-    if (stamp.plan && same(stamp.plan->motion, stamp.motion) && stamp.separation == 0)
-        plan_ = std::move(stamp.plan->jobs);
-    else
-        plan_ = plan(stamp.footprint, joined_motion(stamp, target_.texels().texel_size), stamp_options(options_, stamp),
-                     std::move(plan_));
+ink::NodeAreas StampExposure::expose(const Stamp& stamp) {
+    {
+        PlanScratchPool::Lease scratch(target_.scratch());
+        plan_ = footprint::plan_stamp(target_.model().surface(), stamp.footprint,
+                                      joined_motion(stamp, target_.texels().texel_size), stamp_options(options_, stamp),
+                                      scratch, std::move(plan_));
+    }
     tiles_.clear();
     if (plan_.empty()) return {};
     piecewise_ = footprint::choose_mode(plan_, piecewise_, options_);

@@ -20,11 +20,8 @@ class StampExposure {
     /// `target` must outlive it.
     StampExposure(StampTarget& target, const footprint::StampOptions& options);
 
-    /// Plans a stamp of closed hair before it is exposed. Any thread, beside others.
-    footprint::StampJobs plan(const footprint::Footprint& footprint, const footprint::Motion& motion) const;
-    /// Computes the exposure of texels by a stamp, whose plan it takes. Returns the area under each node of the stamp's
-    /// grid, m².
-    ink::NodeAreas expose(Stamp& stamp);
+    /// Computes the exposure of texels by a stamp. Returns the area under each node of the stamp's grid, m².
+    ink::NodeAreas expose(const Stamp& stamp);
 
     /// Exchanges wet ink (ink/exchange/transfer.h), of paste at most `loose` film units. Returns ink given minus ink
     /// taken, film·m², by node. `ds`: metres of travel.
@@ -50,8 +47,6 @@ class StampExposure {
         ink::NodeContents given{}, taken{};
     };
     struct Scratch;  // of one thread
-    footprint::StampJobs plan(const footprint::Footprint& footprint, const footprint::Motion& motion,
-                              const footprint::StampOptions& options, footprint::StampJobs recycled) const;
     void expose_tile(Tile& tile, const Stamp& stamp, const footprint::TileJob& job, Scratch& scratch);
     template <class Act>
     ink::NodeContents act_on_tiles(Act act);

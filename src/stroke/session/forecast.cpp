@@ -92,13 +92,14 @@ void StrokeForecast::follow(std::vector<brush::Pose> poses) {
 }
 
 // Footprints do not depend on each other: the threads that deposit compute them.
-std::span<PoseForecast> StrokeForecast::close_together(Part& part, std::size_t from) const {
-    const auto poses = std::span(part.poses).subspan(from, std::min(kClosedAtOnce, part.poses.size() - from));
-    parallel_for(poses.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (PoseForecast& pose : poses.subspan(begin, end - begin))
+void StrokeForecast::close_together(Part& part, std::size_t from) const {
+    const std::size_t n = std::min(kClosedAtOnce, part.poses.size() - from);
+    parallel_for(n, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            PoseForecast& pose = part.poses[from + i];
             if (touches(pose.contact)) close_hair(pose.hair, pose.contact, options_.closed);
+        }
     });
-    return poses;
 }
 
 PoseForecast* StrokeForecast::next(const brush::Pose& pose, const brush::Tuft& hair, bool closes) {
@@ -108,10 +109,7 @@ PoseForecast* StrokeForecast::next(const brush::Pose& pose, const brush::Tuft& h
     Part& part = parts_[k];
     if (at >= part.poses.size() || !same(part.poses[at].pose, pose)) return nullptr;
     if (at == 0 && k > 0) parts_[k - 1] = {};
-    if (ahead_ && closes && at % kClosedAtOnce == 0) {
-        const std::span<PoseForecast> closed = close_together(part, at);
-        if (options_.when_closed) options_.when_closed(closed);
-    }
+    if (ahead_ && closes && at % kClosedAtOnce == 0) close_together(part, at);
     ++next_;
     return &part.poses[at];
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -34,8 +33,6 @@ class StrokeForecast {
     struct Options {
         contact::Options contact;
         ClosedHairOptions closed;
-        /// Called by `next` with the poses that it returns from there on, once they have footprints; or none.
-        std::function<void(std::span<PoseForecast>)> when_closed;
     };
 
     /// Returns true for a tuft that can be forecast: not split, hair in a ferrule, bent by the rods of `brush/rod`.
@@ -73,7 +70,7 @@ class StrokeForecast {
     contact::Result bend(brush::Tuft& hair, contact::Memory& memory, std::size_t i) const;
     void cut_path(std::size_t part_poses);
     void compute_part(std::size_t k, bool closes);
-    std::span<PoseForecast> close_together(Part& part, std::size_t from) const;
+    void close_together(Part& part, std::size_t from) const;
 
     const mesh::SurfaceQuery& surface_;
     Options options_;

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "core/ease.h"
-#include "core/system/parallel.h"
 #include "ink/film/paste.h"
 #include "stroke/deposit/stamp_batch.h"
 #include "stroke/placement/placement.h"
@@ -186,19 +185,15 @@ double patch_size(const brush::Preset& preset, double area) {
 
 }  // namespace
 
-// Of the stamp's motion; the rest is the hand's displacement, not the frame's: the patch also grows and shrinks. Hair
-// that lies by itself may swing round. And a patch that leaps by more than it is long, as a tip does that springs back
-// while it is lifted, leaves its line along its own path.
-double StrokeSession::share_of_hair(const ContactMotion& moved, double area, bool leapt, double separation) const {
-    // Spines that leapt went each along its own path: none goes with their mean.
-    if (leapt) return 0;
-    const double size = std::max(patch_size(tuft_.brush.tuft.preset, area), 1e-15);
-    return std::max(smooth_step(glm::length(moved.hair - moved.hand) / size / kLeap), separation);
-}
-
+// The hand's displacement, not the frame's: the patch also grows and shrinks. Hair that lies by itself may swing round.
+// And a patch that leaps by more than it is long, as a tip does that springs back while it is lifted, leaves its line
+// along its own path.
 void StrokeSession::set_motion(Stamp& stamp, const ContactMotion& moved, double area) const {
     const brush::Preset& preset = tuft_.brush.tuft.preset;
-    const double with_hair = share_of_hair(moved, area, stamp.leapt, static_cast<double>(stamp.separation));
+    const double size = std::max(patch_size(preset, area), 1e-15);
+    const double leap = smooth_step(glm::length(moved.hair - moved.hand) / size / kLeap);
+    // Spines that leapt went each along its own path: none goes with their mean.
+    const double with_hair = stamp.leapt ? 0 : std::max(leap, static_cast<double>(stamp.separation));
     stamp.motion.shift = glm::mix(moved.hand, moved.hair, with_hair);
     // Dry hair leaves ink by how it is drawn: where it only comes to touch, a tip that leans would print a speck that
     // its stroke, which begins where it has been pressed aside, does not reach.
@@ -258,26 +253,6 @@ void StrokeSession::note_dryness(double film, double displacement) {
     }
 }
 
-// The motion of each is computed as it will be, if all of them are wet and none is cut off: else the plan is not used.
-void StrokeSession::plan_ahead(std::span<PoseForecast> poses) const {
-    if (!stencil_.empty()) return;
-    MotionTracker motion = motion_;
-    for (PoseForecast& at : poses) {
-        if (!at.hair.closed || at.hair.closed->empty()) {
-            motion.lose_contact();
-            continue;
-        }
-        const ContactMotion moved = motion.advance(at.pose, at.contact, 0);  // of time only its speed depends
-        motion.keep_contact(at.pose);
-        const double with_hair = share_of_hair(moved, covered_area(*at.hair.closed), !at.hair.leapt.empty(), 0);
-        at.hair.plan.emplace().motion.shift = glm::mix(moved.hand, moved.hair, with_hair);
-    }
-    parallel_for(poses.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (PoseForecast& at : poses.subspan(begin, end - begin))
-            if (at.hair.plan) at.hair.plan->jobs = deposit_->plan(*at.hair.closed, at.hair.plan->motion);
-    });
-}
-
 void StrokeSession::step(const brush::Pose& pose) {
     report(progress_.ask, "painting", progress_.done);
     const double dt = path_.started ? pose.time - path_.time : 0.0;
@@ -328,14 +303,13 @@ std::vector<ForceRecord> StrokeSession::forces_at_samples() const {
     return records;
 }
 
-std::unique_ptr<StrokeForecast> StrokeSession::forecast(std::span<const brush::Pose> poses) {
+std::unique_ptr<StrokeForecast> StrokeSession::forecast(std::span<const brush::Pose> poses) const {
     if (!StrokeForecast::serves(tuft_.brush.tuft) || wetness_of(tuft_.brush.reservoir) < 1) return nullptr;
     Path path(path_options());
     for (const brush::Pose& pose : poses) path.resampler.push(next_pose(path, pose), path.poses);
     path.resampler.finish(path.poses);
-    StrokeForecast::Options options{contact_.options, hair_.options().closed, {}};
-    if (deposit_->plans_ahead()) options.when_closed = [this](std::span<PoseForecast> closed) { plan_ahead(closed); };
-    return std::make_unique<StrokeForecast>(tuft_.brush.tuft, std::move(path.poses), input_.surface, options);
+    return std::make_unique<StrokeForecast>(tuft_.brush.tuft, std::move(path.poses), input_.surface,
+                                            StrokeForecast::Options{contact_.options, hair_.options().closed});
 }
 
 SessionResult StrokeSession::finish() {

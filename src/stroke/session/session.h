@@ -66,7 +66,7 @@ class StrokeSession {
     void check_length(std::span<const brush::Pose> poses) const;
     /// Returns a forecast of the stroke along all of its poses, not computed yet, or null where its brush allows none.
     /// Before the first `advance`; safe beside other sessions.
-    std::unique_ptr<StrokeForecast> forecast(std::span<const brush::Pose> poses);
+    std::unique_ptr<StrokeForecast> forecast(std::span<const brush::Pose> poses) const;
     /// Takes a forecast of the poses that come. The bits are the same as without.
     void use(std::unique_ptr<StrokeForecast> forecast) { contact_.forecast = std::move(forecast); }
     /// Lets another thread compute bending and contact of the poses that come by `extend`, ahead of their ink. The bits
@@ -137,9 +137,7 @@ class StrokeSession {
     void step(const brush::Pose& pose);
     contact::Result bend_on_surface(const brush::Pose& pose, double dt);
     contact::Result next_contact(const brush::Pose& pose, double dt);
-    void plan_ahead(std::span<PoseForecast> poses) const;
     void leave_forecast();
-    double share_of_hair(const ContactMotion& moved, double area, bool leapt, double separation) const;
     void set_motion(Stamp& stamp, const ContactMotion& moved, double area) const;
     void set_ink(Stamp& stamp, double area) const;
     void note_dryness(double film, double displacement);
