@@ -13,7 +13,14 @@ constexpr std::size_t kSizes = std::bit_width(kLargest / kSmallest);
 constexpr std::size_t kKept = std::size_t{4} << 20;  // bytes of one size that a thread keeps at most
 
 // Blocks that are used again hide errors from a sanitizer that looks for use after free.
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(__SANITIZE_ADDRESS__)  // gcc
+#define TUFT_ADDRESS_SANITIZER
+#elif defined(__has_feature)  // clang
+#if __has_feature(address_sanitizer)
+#define TUFT_ADDRESS_SANITIZER
+#endif
+#endif
+#if defined(TUFT_ADDRESS_SANITIZER)
 constexpr bool kRecycles = false;
 #else
 constexpr bool kRecycles = true;
