@@ -141,7 +141,9 @@ TEST_P(Papers, HairHeldOnTheSheetStaysInTouchWhereItsForceHasRelaxed) {
         const double f = std::min(1.0, i / 40.0);
         const Pose pose{{0.004 * f, 0, p.length * (1 - 0.1 * f)}, {1, 0, 0, 0}, 0.01 * i};
         state = step(tuft, pose, {&sheet, 1}, 0.01);
-        if (i > 40) ASSERT_TRUE(state.touching) << i;
+        if (i > 40) {
+            ASSERT_TRUE(state.touching) << i;
+        }
     }
     EXPECT_GE(state.normal_force, 0);
 }

@@ -132,7 +132,9 @@ TEST(Workspace, CarriesTheBrushSteadily) {
         servo.begin(tick, &state, control);
         arm = servo.finish(nullptr).arm;
         // 0.5 mm of the offset and 4 mrad at 50 mm.
-        if (tick > 1) EXPECT_LE(glm::distance(arm, before), 5e-4 + 4e-3 * 0.05 + 1e-9) << tick;
+        if (tick > 1) {
+            EXPECT_LE(glm::distance(arm, before), 5e-4 + 4e-3 * 0.05 + 1e-9) << tick;
+        }
         before = arm;
     }
     EXPECT_LT(glm::distance(arm, control.workspace.to_world(at(0.05).position)), 1e-9);

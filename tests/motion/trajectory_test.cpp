@@ -125,7 +125,9 @@ TEST(Plan, TravelIsClearOfTheModel) {
                     };
                     const Vec3 d = at(i + 1) - at(i);
                     const double length = glm::length(d);
-                    if (length > 0) EXPECT_FALSE(query.occluded(at(i), d / length, 0, length)) << turn << " " << s;
+                    if (length > 0) {
+                        EXPECT_FALSE(query.occluded(at(i), d / length, 0, length)) << turn << " " << s;
+                    }
                     EXPECT_FALSE(query.closest_point(at(i), 0.9 * kTravelGap)) << turn << " " << s;
                 }
         }

@@ -149,7 +149,7 @@ TEST_F(Ahead, AHandsStrokesHaveTheSameBitsHoweverTheirSamplesCome) {
                                            until_dry(stroke_at(0.004, DipMode::persistent), 8),
                                            stroke_at(0.008, DipMode::persistent), in_wet};
     const Painted expected = paint_by_hand(strokes, 1'000'000, 1);
-    for (const auto [at_once, threads] : std::vector<std::pair<std::size_t, int>>{{1, 1}, {1, 2}, {7, 3}, {50, 2}}) {
+    for (const auto& [at_once, threads] : std::vector<std::pair<std::size_t, int>>{{1, 1}, {1, 2}, {7, 3}, {50, 2}}) {
         const Painted painted = paint_by_hand(strokes, at_once, threads);
         EXPECT_EQ(painted.hash, expected.hash) << at_once << " at once, " << threads << " threads";
         for (std::size_t i = 0; i < strokes.size(); ++i) {

@@ -53,7 +53,9 @@ TEST(StampBatch, PlansAndDepositsWithoutAllocationsOnceItIsWarm) {
         const double given = batch.flush();
         if (repeat == 0) first = given;
         EXPECT_GT(given, 0);
-        if (repeat > 0) EXPECT_EQ(allocations_of_this_thread() - before, 0u) << repeat;
+        if (repeat > 0) {
+            EXPECT_EQ(allocations_of_this_thread() - before, 0u) << repeat;
+        }
     }
     EXPECT_GT(first, 0);
     set_thread_count(0);
