@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 #include "brush/tuft/tuft.h"
 #include "footprint/outline/slip.h"
@@ -79,10 +78,9 @@ TEST(Hair, MarksCloseIntoTheOutlineAsTheyGetWet) {
         return sum * f.cell * f.cell / area_of(closed);
     };
     EXPECT_GT(open(0.8), 0.02);
-    // Pieces of a band overlap or miss a little where it bends, by 0.0015 of the area; at the blunt point they differ
-    // from the outline's round end by no more than the half-disc that ends it.
-    const double tip = pressed().tuft.preset.tip_radius, end = 0.5 * std::numbers::pi * tip * tip;
-    for (const double wet : {0.9, 0.97, 0.999}) EXPECT_LT(open(wet), 1.5e-3 + end / area_of(closed)) << wet;
+    // Pieces of a band overlap or miss a little where it bends, by 0.0015 of the area if the point is fine (0.09 mm). A
+    // blunt one (0.25 mm) ends in a half-disc of 0.002 of the area, or more pressed flat, which they do not have.
+    for (const double wet : {0.9, 0.97, 0.999}) EXPECT_LT(open(wet), 4e-3) << wet;
 }
 
 TEST(Hair, LessInkCoversLess) {

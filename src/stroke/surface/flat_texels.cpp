@@ -74,7 +74,10 @@ class SurfaceGrid {
         double lowest = 0, highest = 0;   ///< of the surface at the nodes around, along the normal, metres
     };
     std::optional<Foot> foot(const Vec3& p, Vec2 cell) const {
-        constexpr int kSteps = 8;
+        // Over an edge where patches meet, each may have the foot beyond the other's end: shorter steps end at the
+        // edge.
+        constexpr int kSteps = 16, kWhole = 6;
+        constexpr double kAtEdge = 0.5;  // cells
         for (int k = 0; k < kSteps; ++k) {
             if (!(cell.x >= 0 && cell.y >= 0 && cell.x <= n_[0] - 1 && cell.y <= n_[1] - 1)) return {};
             const int i = std::min(static_cast<int>(cell.x), n_[0] - 2),
@@ -92,9 +95,11 @@ class SurfaceGrid {
             if (!(det > 1e-6 * uu * vv)) return {};
             const double x1 = glm::dot(off, du), x2 = glm::dot(off, dv);
             const Vec2 change((vv * x1 - uv * x2) / det, (uu * x2 - uv * x1) / det);
-            if (std::max(std::abs(change.x), std::abs(change.y)) < 1e-4) {
+            const double most = std::max(std::abs(change.x), std::abs(change.y));
+            const bool converged = most < 1e-4, at_edge = k + 1 == kSteps && most < kAtEdge;
+            if (converged || at_edge) {
                 Foot foot{
-                    cell + change, off,
+                    converged ? cell + change : cell, off,
                     glm::normalize(glm::mix(glm::mix(a.normal, b.normal, u), glm::mix(c.normal, d.normal, u), v))};
                 const auto range =
                     std::minmax({glm::dot(a.position - pa, foot.normal), glm::dot(b.position - pb, foot.normal),
@@ -102,7 +107,7 @@ class SurfaceGrid {
                 foot.lowest = range.first, foot.highest = range.second;
                 return foot;
             }
-            cell += glm::clamp(change, Vec2(-2), Vec2(2));
+            cell += std::ldexp(1.0, std::min(0, kWhole - k)) * glm::clamp(change, Vec2(-2), Vec2(2));
         }
         return {};
     }
