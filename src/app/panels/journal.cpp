@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/panels/panels.h"
+#include "app/work/unrolled.h"
 #include "brush/preset/preset.h"
 
 /// The list of what was painted, and what can be done with its entries.
@@ -61,30 +62,47 @@ void draw_entry(const JournalParts& s, const StrokeLine& line, ImVec2 at, float 
                   [&](const Vec3f& p) { return ImVec2(at.x + pad + p.x * inner, at.y + pad + p.y * inner); });
 }
 
-// A drawing in its own frame, all strokes in one picture; other groups by their first stroke.
+// The frames of flat strokes in one plane; identity where none has a place on the model.
+std::vector<PlaneFrame> frames_of(const Lines& lines) {
+    std::vector<stroke::Placement> placements;
+    for (const StrokeLine* line : lines) {
+        const bool follows = !line->placement && !placements.empty();
+        placements.push_back(follows ? placements.back() : line->placement.value_or(stroke::Placement{}));
+    }
+    return unrolled(placements);
+}
+
+// All flat strokes in one picture, unrolled from the model; other groups by their first stroke.
 void draw_group(const JournalParts& s, const Lines& lines, ImVec2 at, float size) {
     const float shift = s.ui.px(2);
     const bool hidden = std::all_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return l->hidden; });
     draw_sheet(ImVec2(at.x + shift, at.y - shift), size - shift, hidden);
     draw_sheet(ImVec2(at.x, at.y + shift), size - shift, hidden);
+    Lines flat;
+    std::copy_if(lines.begin(), lines.end(), std::back_inserter(flat),
+                 [](const StrokeLine* l) { return l->flat && !l->path.empty(); });
+    if (flat.empty()) return draw_entry(s, *lines.front(), ImVec2(at.x, at.y + shift), size - shift);
+    const std::vector<PlaneFrame> frames = frames_of(flat);
+    const auto in_plane = [&](std::size_t i, const Vec3f& p) {
+        return frames[i].at(flat[i]->path_centre + flat[i]->path_span * (Vec2(p) - 0.5));
+    };
     Box box;
-    for (const StrokeLine* line : lines) {
-        if (!line->flat || line->path.empty()) continue;
-        for (const Vec3f& p : line->path) box.add(Vec3(line->path_centre + line->path_span * (Vec2(p) - 0.5), 0));
+    double longest = 0;  // stroke, metres
+    for (std::size_t i = 0; i < flat.size(); ++i) {
+        for (const Vec3f& p : flat[i]->path) box.add(Vec3(in_plane(i, p), 0));
+        longest = std::max(longest, flat[i]->path_span);
     }
     const float inner = size - shift - 2 * 0.1f * size;
-    if (!(box.hi.x >= box.lo.x)) return draw_entry(s, *lines.front(), ImVec2(at.x, at.y + shift), size - shift);
     const double span = std::max({box.size().x, box.size().y, 1e-6});
-    const std::size_t step = 1 + lines.size() / kThumbnailStrokes;
-    for (std::size_t i = 0; i < lines.size(); i += step) {
-        const StrokeLine& line = *lines[i];
-        if (!line.flat) continue;
-        draw_path(s, line, 0.3f * size, [&](const Vec3f& p) {
-            const Vec2 d = (line.path_centre + line.path_span * (Vec2(p) - 0.5) - Vec2(box.centre())) / span;
+    // Many characters are small in the picture: thinner, so that they do not run together.
+    const auto thickness = static_cast<float>(0.3 * std::min(1.0, 2 * longest / span));
+    const std::size_t every = 1 + flat.size() / kThumbnailStrokes;
+    for (std::size_t i = 0; i < flat.size(); i += every)
+        draw_path(s, *flat[i], thickness * size, [&](const Vec3f& p) {
+            const Vec2 d = (in_plane(i, p) - Vec2(box.centre())) / span;
             return ImVec2(at.x + 0.5f * (size - shift) + static_cast<float>(d.x) * inner,
                           at.y + shift + 0.5f * (size - shift) + static_cast<float>(d.y) * inner);
         });
-    }
 }
 
 std::vector<std::uint64_t> ids_of(const Lines& lines) {
