@@ -47,7 +47,7 @@ TEST(Unrolled, ALevelRowIsStraightRoundACylinderAndAnArcRoundACone) {
         for (std::size_t i = 1; i < frames.size(); ++i) {
             EXPECT_NEAR(glm::distance(frames[i].origin, frames[i - 1].origin), chord, kExact);
             const double turned = 2 * M_PI * static_cast<double>(i) / kCount * std::sin(slope);
-            // The shortest arc between two neighbours is that of the cone but for their angle cubed, 1e-4 each.
+            // The shortest arc between two neighbours is that of the cone but for their angle cubed, below 1e-4 each.
             EXPECT_NEAR(std::abs(std::atan2(frames[i].right.y, frames[i].right.x)),
                         std::abs(std::remainder(turned, 2 * M_PI)), 1e-4 * static_cast<double>(i));
         }

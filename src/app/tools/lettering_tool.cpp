@@ -40,7 +40,10 @@ void LetteringTool::watch(const Event* cursor) {
         shown_.reset();
         return;
     }
-    if (!(l.side > 0)) l.side = usual_side(s.paint_thread->model().mesh->bounds);
+    if (!(l.side > 0)) {
+        l.side = usual_side(s.paint_thread->model().mesh->bounds);
+        preset_.clear();  // of another project: this one's brush is no choice from the rack
+    }
     follow_brush();
     lay_out(l);
     if (std::exchange(s.tools.place_typed, false) && !l.empty())
