@@ -79,6 +79,29 @@ TEST(Lettering, ThePreviewLiesAboutItsPlaceAsLargeAsTheTextWillBe) {
     EXPECT_NEAR(lines[n].front().position.x - lines[0].front().position.x, l.text->style.spacing * 0.02, kExact);
 }
 
+// A stem of a Latin letter is two points far apart: on the bowl its chord would be 1 mm inside the wall. Points a tenth
+// of a side apart, h = 3 mm, leave h^2 / 8R = 0.04 mm where the wall is bent most, R = 30 mm; twice that is allowed.
+TEST(Lettering, ThePreviewOfStraightStemsBendsWithTheSurface) {
+    const stroke::Model bowl = test::shipped_model("bowl.ply", 64);
+    Lettering l;
+    l.wanted.text = "lHM";
+    l.wanted.style = "italic";
+    l.side = 0.03;
+    read(l);
+    ASSERT_FALSE(l.empty()) << l.fault.text();
+    const Vec3 at = bowl.query->ray({0, -1, 0.035}, {0, 1, 0})->position;
+    for (const writer::Direction direction : {writer::Direction::horizontal, writer::Direction::rim}) {
+        l.direction = direction;
+        lay_out(l);
+        const LetteringPlace place = place_lettering(l, *bowl.query, at, {0, -1, 0}, {1, 0, 0}, {0, -1, 0});
+        for (const auto& line : preview_lines(*bowl.query, l, place))
+            for (std::size_t i = 1; i < line.size(); ++i) {
+                const Vec3 middle = 0.5 * (line[i - 1].position + line[i].position);
+                EXPECT_LT(bowl.query->closest_point(middle)->distance, 8e-5);
+            }
+    }
+}
+
 TEST(Lettering, OfALongTextThePreviewIsALineForEachRow) {
     const stroke::Model sheet = test::shipped_model("sheet.ply", 64);
     std::string text;

@@ -76,6 +76,21 @@ TEST_F(StudioLettering, TheStylesBrushIsUsedUntilAnotherOneIsTaken) {
     EXPECT_EQ(stroke::brush_of(strokes[5]).rfind("wolf-small", 0), 0u) << stroke::brush_of(strokes[5]);
 }
 
+// The brush that a project is opened with is the last one in its journal: not a choice of another brush than the
+// style's, which is larger for larger characters.
+TEST_F(StudioLettering, AProjectOpenedAgainKeepsTheStylesBrushAndItsGroup) {
+    const std::string write = "move 52%,62%\nwait 0.1\npress\nrelease\nwait-ready\n";
+    const Ran ran = studio(written(kYong) + write + "save work.tuft\nwait-ready\nclose\nwait 0.2\nopen \"" +
+                               path("work.tuft") + "\"\nwait-ready\nexpect strokes 5\nexpect label \"group " + kYong +
+                               "\"\nset text-size 30\n" + write + "expect strokes 10\nwait 0.2\n",
+                           kWindow);
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const auto strokes = project("work.tuft");
+    ASSERT_EQ(strokes.size(), 10u);
+    EXPECT_NE(stroke::brush_of(strokes[0]), stroke::brush_of(strokes[5]));
+    EXPECT_EQ(stroke::brush_of(strokes[5]).rfind("goat-medium*", 0), 0u) << stroke::brush_of(strokes[5]);
+}
+
 // The window goes on while a long text is planned, and a stop leaves nothing of it.
 TEST_F(StudioLettering, ALongTextIsPlannedBesideTheWindowAndCanBeStopped) {
     std::string text;

@@ -17,6 +17,7 @@ namespace {
 // A preview follows the cursor: of longer texts less is shown.
 constexpr std::size_t kMostStrokesShown = 750, kMostCharactersShown = 60;
 constexpr double kUsualPart = 0.1;  // of the model's diagonal
+constexpr double kShownStep = 0.1;  // of a character's side: the longest straight part of its preview
 constexpr int kPerSpan = 64;        // samples of a curve between two control points
 
 /// Rounded to a thousandth, as `place_words` states it.
@@ -71,6 +72,23 @@ LetteringPath path_of(const mesh::SurfaceQuery& query, const std::vector<CurvePo
 double kept_within(const LetteringPath& on, double length) {
     const double room = on.path.length();
     return length < room ? std::clamp(on.middle, 0.5 * length, room - 0.5 * length) : 0.5 * room;
+}
+
+/// The line with points at most `step` apart: on the model it bends, and each part of it is hidden by itself.
+std::vector<Vec2> divided(const std::vector<Vec2>& line, double step) {
+    std::vector<Vec2> out;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (i > 0) {
+            const int n = static_cast<int>(std::ceil(glm::distance(line[i - 1], line[i]) / step));
+            for (int k = 1; k < n; ++k) out.push_back(glm::mix(line[i - 1], line[i], static_cast<double>(k) / n));
+        }
+        out.push_back(line[i]);
+    }
+    return out;
+}
+
+void divide(std::vector<std::vector<Vec2>>& lines, double side) {
+    for (std::vector<Vec2>& line : lines) line = divided(line, kShownStep * side);
 }
 
 Box box_of(const std::vector<std::vector<Vec2>>& lines) {
@@ -173,9 +191,10 @@ std::vector<std::vector<PreviewPoint>> preview_lines(const mesh::SurfaceQuery& q
                                                      const LetteringPlace& place, std::size_t most) {
     const writer::Text& text = *l.text;
     if (const auto* placement = std::get_if<stroke::Placement>(&place)) {
-        std::vector<std::vector<Vec2>> lines =
-            strokes_in(text) < kMostStrokesShown ? writer::outlined_lines(text) : writer::middle_lines(text);
+        const bool whole = strokes_in(text) < kMostStrokesShown;
+        std::vector<std::vector<Vec2>> lines = whole ? writer::outlined_lines(text) : writer::middle_lines(text);
         const Vec2 centre(box_of(lines).centre());
+        if (whole) divide(lines, text.layout.side);
         for (std::vector<Vec2>& line : lines)
             for (Vec2& p : line) p -= centre;
         return preview_lines(query, lines, *placement, most);
@@ -183,10 +202,11 @@ std::vector<std::vector<PreviewPoint>> preview_lines(const mesh::SurfaceQuery& q
     const LetteringPath& on = std::get<LetteringPath>(place);
     const std::vector<stroke::Placement> places = writer::places_along(text, on.path, on.middle);
     if (places.size() > kMostCharactersShown) return {line_through(places)};
-    const auto characters = writer::outlined_characters(text);
+    std::vector<std::vector<std::vector<Vec2>>> characters = writer::outlined_characters(text);
     std::vector<std::vector<PreviewPoint>> all;
     for (std::size_t i = 0; i < characters.size(); ++i) {
         if (characters[i].empty()) continue;
+        divide(characters[i], text.layout.side);
         auto lines = preview_lines(query, characters[i], places[i], std::max<std::size_t>(8, most / characters.size()));
         std::move(lines.begin(), lines.end(), std::back_inserter(all));
     }

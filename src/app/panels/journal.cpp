@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/panels/panels.h"
+#include "app/work/unrolled.h"
 #include "brush/preset/preset.h"
 
 /// The list of what was painted, and what can be done with its entries.
@@ -12,6 +13,7 @@ namespace {
 constexpr float kRowHeight = 42, kIndent = 16;
 constexpr const char* kGroup = "Group";         // the name of a group that is made in the list
 constexpr std::size_t kThumbnailStrokes = 300;  // of a group, that its picture shows
+constexpr double kThumbnailSpan = 5;            // lengths of its longest stroke, of a text along a path
 
 using Lines = std::vector<const StrokeLine*>;
 
@@ -61,30 +63,70 @@ void draw_entry(const JournalParts& s, const StrokeLine& line, ImVec2 at, float 
                   [&](const Vec3f& p) { return ImVec2(at.x + pad + p.x * inner, at.y + pad + p.y * inner); });
 }
 
-// A drawing in its own frame, all strokes in one picture; other groups by their first stroke.
-void draw_group(const JournalParts& s, const Lines& lines, ImVec2 at, float size) {
-    const float shift = s.ui.px(2);
-    const bool hidden = std::all_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return l->hidden; });
-    draw_sheet(ImVec2(at.x + shift, at.y - shift), size - shift, hidden);
-    draw_sheet(ImVec2(at.x, at.y + shift), size - shift, hidden);
-    Box box;
+// The frames of flat strokes in one plane; identity where none has a place on the model.
+std::vector<PlaneFrame> frames_of(const Lines& lines) {
+    std::vector<stroke::Placement> placements;
     for (const StrokeLine* line : lines) {
-        if (!line->flat || line->path.empty()) continue;
-        for (const Vec3f& p : line->path) box.add(Vec3(line->path_centre + line->path_span * (Vec2(p) - 0.5), 0));
+        const bool follows = !line->placement && !placements.empty();
+        placements.push_back(follows ? placements.back() : line->placement.value_or(stroke::Placement{}));
     }
-    const float inner = size - shift - 2 * 0.1f * size;
-    if (!(box.hi.x >= box.lo.x)) return draw_entry(s, *lines.front(), ImVec2(at.x, at.y + shift), size - shift);
-    const double span = std::max({box.size().x, box.size().y, 1e-6});
-    const std::size_t step = 1 + lines.size() / kThumbnailStrokes;
-    for (std::size_t i = 0; i < lines.size(); i += step) {
-        const StrokeLine& line = *lines[i];
-        if (!line.flat) continue;
-        draw_path(s, line, 0.3f * size, [&](const Vec3f& p) {
-            const Vec2 d = (line.path_centre + line.path_span * (Vec2(p) - 0.5) - Vec2(box.centre())) / span;
-            return ImVec2(at.x + 0.5f * (size - shift) + static_cast<float>(d.x) * inner,
-                          at.y + shift + 0.5f * (size - shift) + static_cast<float>(d.y) * inner);
+    return unrolled(placements);
+}
+
+// The flat strokes of a group in one plane. Of a text along a path they are those of its first characters, which are
+// large enough to be read.
+struct GroupPicture {
+    Lines lines;
+    std::vector<PlaneFrame> frames;
+    Box box;             // metres
+    double longest = 0;  // stroke, metres
+
+    Vec2 in_plane(std::size_t i, const Vec3f& p) const {
+        return frames[i].at(lines[i]->path_centre + lines[i]->path_span * (Vec2(p) - 0.5));
+    }
+};
+
+GroupPicture picture_of(const Lines& lines) {
+    GroupPicture picture;
+    std::copy_if(lines.begin(), lines.end(), std::back_inserter(picture.lines),
+                 [](const StrokeLine* l) { return l->flat && !l->path.empty(); });
+    picture.frames = frames_of(picture.lines);
+    for (std::size_t i = 0; i < picture.lines.size();) {
+        Box grown = picture.box;
+        std::size_t next = i;
+        for (; next < picture.lines.size() && picture.frames[next].origin == picture.frames[i].origin; ++next) {
+            for (const Vec3f& p : picture.lines[next]->path) grown.add(Vec3(picture.in_plane(next, p), 0));
+            picture.longest = std::max(picture.longest, picture.lines[next]->path_span);
+        }
+        if (i > 0 && std::max(grown.size().x, grown.size().y) > kThumbnailSpan * picture.longest) {
+            picture.lines.resize(i);
+            break;
+        }
+        picture.box = grown;
+        i = next;
+    }
+    return picture;
+}
+
+// All flat strokes in one picture, unrolled from the model; other groups by their first stroke.
+void draw_group(const JournalParts& s, const Lines& lines, ImVec2 at, float size) {
+    const float shift = s.ui.px(2), side = size - shift;
+    const bool hidden = std::all_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return l->hidden; });
+    draw_sheet(ImVec2(at.x + shift, at.y - shift), side, hidden);
+    draw_sheet(ImVec2(at.x, at.y + shift), side, hidden);
+    const GroupPicture picture = picture_of(lines);
+    if (picture.lines.empty()) return draw_entry(s, *lines.front(), ImVec2(at.x, at.y + shift), side);
+    const float inner = side - 2 * 0.1f * size;
+    const double span = std::max({picture.box.size().x, picture.box.size().y, 1e-6});
+    // Many characters are small in the picture: thinner, so that they do not run together.
+    const auto thickness = static_cast<float>(0.3 * std::min(1.0, 2 * picture.longest / span));
+    const std::size_t every = 1 + picture.lines.size() / kThumbnailStrokes;
+    for (std::size_t i = 0; i < picture.lines.size(); i += every)
+        draw_path(s, *picture.lines[i], thickness * size, [&](const Vec3f& p) {
+            const Vec2 d = (picture.in_plane(i, p) - Vec2(picture.box.centre())) / span;
+            return ImVec2(at.x + 0.5f * side + static_cast<float>(d.x) * inner,
+                          at.y + shift + 0.5f * side + static_cast<float>(d.y) * inner);
         });
-    }
 }
 
 std::vector<std::uint64_t> ids_of(const Lines& lines) {

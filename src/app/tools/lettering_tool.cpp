@@ -40,12 +40,16 @@ void LetteringTool::watch(const Event* cursor) {
         shown_.reset();
         return;
     }
-    if (!(l.side > 0)) l.side = usual_side(s.paint_thread->model().mesh->bounds);
+    if (!(l.side > 0)) {
+        l.side = usual_side(s.paint_thread->model().mesh->bounds);
+        preset_.clear();  // of another project: this one's brush is no choice from the rack
+    }
     follow_brush();
     lay_out(l);
     if (std::exchange(s.tools.place_typed, false) && !l.empty())
         if (const auto typed = typed_spot(s)) place(*typed);
-    const auto spot = l.empty() || s.reported.file.viewing ? std::nullopt : spot_at(s, cursor);
+    const bool shows = !l.empty() && !s.tools.letters.busy(l) && !s.reported.file.viewing;
+    const auto spot = shows ? spot_at(s, cursor) : std::nullopt;
     s.tools.snap_guides.clear();
     s.tools.place_fault = {};
     if (!spot) return drop_preview();
@@ -94,6 +98,8 @@ void LetteringTool::place(const Event* cursor) {
 void LetteringTool::place(const PlacingSpot& spot) {
     Session& s = session_;
     const Lettering& l = s.tools.lettering;
+    // Else what is written would be another text than the one in the field.
+    if (s.tools.letters.busy(l)) return show_message(s.status, "The characters of the text are still being read");
     try {
         PaintText command{.text = *l.text,
                           .place = place_at(spot),

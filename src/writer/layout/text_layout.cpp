@@ -1,11 +1,14 @@
 #include "writer/layout/text_layout.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <unordered_map>
 
 #include "core/error.h"
+#include "core/text/units.h"
 #include "stroke/surface/sharp_edges.h"
 
 namespace tuft::writer {
@@ -176,8 +179,8 @@ std::vector<double> place_along(const ModelPath& path, const std::vector<Glyph>&
     double whole = 0;
     for (const Glyph& g : glyphs) whole += advance_of(g, options);
     if (const double room = path.length(); whole > room * (1 + 1e-9))
-        throw Error(Message("the text is {} mm long, the path on the model {} mm", std::round(whole * 1e4) / 10,
-                            std::round(room * 1e4) / 10));
+        throw Error(Message("the text is {} mm long, the path on the model {} mm",
+                            fmt::format("{:.1f}", whole / kMillimetre), fmt::format("{:.1f}", room / kMillimetre)));
     std::vector<double> out;
     double at = middle - 0.5 * whole;
     for (const Glyph& g : glyphs) {
