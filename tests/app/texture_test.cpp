@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "models.h"
@@ -40,6 +42,51 @@ TEST(Texture, RefreshedTilesAreWhatTheWholeWouldBe) {
     const render::MapPixels whole = Texture(painting).pixels();
     for (std::size_t level = 0; level < render::kTextureLevels; ++level)
         EXPECT_EQ(map.levels[level], whole.levels[level]) << level;
+}
+
+// Light of the first channel as a graphics card looks it up at the centre of texel (x, y) of the first level.
+float looked_up(const render::MapPixels& map, std::size_t level, std::size_t x, std::size_t y) {
+    const auto side = static_cast<int>(map.size >> level);
+    const double scale = 1.0 / (1 << level);
+    const double u = (static_cast<double>(x) + 0.5) * scale - 0.5, v = (static_cast<double>(y) + 0.5) * scale - 0.5;
+    double light = 0;
+    for (int j = 0; j < 2; ++j)
+        for (int i = 0; i < 2; ++i) {
+            const double column = std::floor(u) + i, row = std::floor(v) + j;
+            const double weight = (1 - std::abs(u - column)) * (1 - std::abs(v - row));
+            const int cx = std::clamp(static_cast<int>(column), 0, side - 1),
+                      cy = std::clamp(static_cast<int>(row), 0, side - 1);
+            light += weight * ink::linear_of_code()[map.levels[level][static_cast<std::size_t>(cy * side + cx)][0]];
+        }
+    return static_cast<float>(light);
+}
+
+TEST(Texture, ShowsNoLineAtSeamsAtCoarseLevels) {
+    // Where all of a model is dark, a lookup on it is dark at each level: it takes nothing of what is bare between
+    // charts.
+    const stroke::Model model = test::shipped_model("bowl.ply", 512);
+    stroke::Document painting(model);
+    painting.paint(stroke::Fill{.ink = "carbon"});
+    const render::MapPixels map = Texture(painting).pixels();
+    const atlas::TexelMap& texels = model.texels;
+    std::array<float, 4> lightest{};
+    for (std::uint32_t slot = 0; slot < texels.n_slots(); ++slot)
+        for (std::size_t t = 0; t < atlas::kTileTexels; ++t) {
+            if (texels.tiles[slot].cluster[t] == atlas::kNoCluster) continue;
+            const std::size_t tile = texels.tile_of_slot[slot], per_side = texels.tiles_per_side;
+            for (std::size_t level = 0; level < lightest.size(); ++level)
+                lightest[level] =
+                    std::max(lightest[level], looked_up(map, level, tile % per_side * atlas::kTile + t % atlas::kTile,
+                                                        tile / per_side * atlas::kTile + t / atlas::kTile));
+        }
+    ASSERT_LT(lightest[0], 0.1f);
+    // Two steps of code of a dark colour: a gutter's fit is rounded, and so is a mean.
+    constexpr float kRounding = 2 * 0.0008f;
+    EXPECT_NEAR(lightest[1], lightest[0], kRounding);
+    EXPECT_NEAR(lightest[2], lightest[0], kRounding);
+    // A texel of the third level without a gutter of 4 texels begins 2.5 texels from a texel of a chart in both
+    // directions at least: its weight is (1/2 − 2.5/8)² at most, and its light below 1.
+    EXPECT_NEAR(lightest[3], lightest[0], 9.0f / 256);
 }
 
 TEST(HeightCode, IsFineForThinInkAndReachesThickPaint) {

@@ -34,22 +34,32 @@ const SrgbTable& srgb() {
     return table;
 }
 
-Rgba mean(const Rgba& a, const Rgba& b, const Rgba& c, const Rgba& d) {
+// Mean of four texels weighted by the texels of the first level that each stands for; plain where none is filled.
+Rgba mean(const std::array<Rgba, 4>& of, std::array<int, 4> weight) {
     const SrgbTable& t = srgb();
-    Rgba out;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const float light = 0.25f * (t.decode[a[k]] + t.decode[b[k]] + t.decode[c[k]] + t.decode[d[k]]);
-        out[k] = t.encode[static_cast<std::size_t>(std::lround(4095.0f * light))];
+    int all = weight[0] + weight[1] + weight[2] + weight[3];
+    if (all == 0) weight = {1, 1, 1, 1}, all = 4;
+    std::array<float, 3> light{};
+    int height = all / 2;
+    for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) light[k] += static_cast<float>(weight[i]) * t.decode[of[i][k]];
+        height += weight[i] * of[i][3];
     }
-    out[3] = static_cast<std::uint8_t>((a[3] + b[3] + c[3] + d[3] + 2) / 4);
+    Rgba out;
+    for (std::size_t k = 0; k < 3; ++k)
+        out[k] = t.encode[static_cast<std::size_t>(std::lround(4095.0f * (light[k] / static_cast<float>(all))))];
+    out[3] = static_cast<std::uint8_t>(height / all);
     return out;
 }
 
-void halve(const Rgba* from, Rgba* to, std::size_t side, std::size_t first_row, std::size_t last_row) {
-    for (std::size_t y = first_row; y < last_row; ++y)
+// Halves `from` and its weights into `side`² texels.
+void halve(const Rgba* from, const int* weights, Rgba* to, int* sums, std::size_t side) {
+    for (std::size_t y = 0; y < side; ++y)
         for (std::size_t x = 0; x < side; ++x) {
-            const Rgba* p = from + 4 * side * y + 2 * x;
-            to[side * y + x] = mean(p[0], p[1], p[2 * side], p[2 * side + 1]);
+            const std::size_t p = 4 * side * y + 2 * x, q = p + 2 * side;
+            const std::array<int, 4> w{weights[p], weights[p + 1], weights[q], weights[q + 1]};
+            to[side * y + x] = mean({from[p], from[p + 1], from[q], from[q + 1]}, w);
+            sums[side * y + x] = w[0] + w[1] + w[2] + w[3];
         }
 }
 
@@ -85,9 +95,24 @@ Texture::Texture(const stroke::Document& painting, const ProgressFn& progress) {
     report(progress, "picture of the ink", 0.6);
     colour_ = ink::compose_srgb8(shown.stack(), model.texels, shown.substrate(), options);
     padded_ = model.texels.tiles_per_side * atlas::kTile;
+    find_filled(model.texels, options.seams->gutter);
     height_.assign(static_cast<std::size_t>(colour_.size) * colour_.size, 0);
     refresh_heights(shown.stack().touched_slots(), painting);
     report(progress, "picture of the ink", 1);
+}
+
+void Texture::find_filled(const atlas::TexelMap& map, const atlas::Gutter& gutter) {
+    filled_.assign(std::size_t{map.tiles_per_side} * map.tiles_per_side, {});
+    parallel_for(map.n_slots(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t slot = begin; slot < end; ++slot)
+            for (std::size_t t = 0; t < atlas::kTileTexels; ++t)
+                if (map.tiles[slot].cluster[t] != atlas::kNoCluster) filled_[map.tile_of_slot[slot]].set(t);
+    });
+    for (const std::uint32_t texel : gutter.texels) {
+        const std::size_t x = texel % gutter.size, y = texel / gutter.size;
+        filled_[y / atlas::kTile * map.tiles_per_side + x / atlas::kTile].set(y % atlas::kTile * atlas::kTile +
+                                                                              x % atlas::kTile);
+    }
 }
 
 void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke::Document& painting) {
@@ -217,10 +242,13 @@ render::TilePixels Texture::tile(std::uint32_t index) const {
         const std::size_t x = std::min(size - 1, x0 + t % atlas::kTile), y = std::min(size - 1, y0 + t / atlas::kTile);
         out.rgba[t] = texel(x, y);
     }
+    std::array<int, render::TilePixels::kStart.back()> weights;
+    for (std::size_t t = 0; t < atlas::kTileTexels; ++t) weights[t] = filled_[index][t];
     for (std::size_t level = 1; level < render::kTextureLevels; ++level) {
-        const std::size_t side = static_cast<std::size_t>(atlas::kTile) >> level;
-        halve(&out.rgba[static_cast<std::size_t>(render::TilePixels::kStart[level - 1])],
-              &out.rgba[static_cast<std::size_t>(render::TilePixels::kStart[level])], side, 0, side);
+        const auto finer = static_cast<std::size_t>(render::TilePixels::kStart[level - 1]),
+                   here = static_cast<std::size_t>(render::TilePixels::kStart[level]);
+        halve(&out.rgba[finer], &weights[finer], &out.rgba[here], &weights[here],
+              static_cast<std::size_t>(atlas::kTile) >> level);
     }
     return out;
 }
@@ -228,20 +256,20 @@ render::TilePixels Texture::tile(std::uint32_t index) const {
 render::MapPixels Texture::pixels() const {
     render::MapPixels map;
     map.size = padded_;
-    const std::size_t size = colour_.size, padded = padded_;
-    map.levels[0].resize(padded * padded);
-    parallel_for(padded, 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t y = begin; y < end; ++y)
-            for (std::size_t x = 0; x < padded; ++x)
-                map.levels[0][y * padded + x] = texel(std::min(size - 1, x), std::min(size - 1, y));
+    const std::size_t padded = padded_, per_side = padded / atlas::kTile;
+    for (std::size_t level = 0; level < render::kTextureLevels; ++level)
+        map.levels[level].resize((padded >> level) * (padded >> level));
+    parallel_for(per_side * per_side, 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t index = begin; index < end; ++index) {
+            const render::TilePixels one = tile(static_cast<std::uint32_t>(index));
+            for (std::size_t level = 0; level < render::kTextureLevels; ++level) {
+                const std::size_t side = static_cast<std::size_t>(atlas::kTile) >> level, stride = padded >> level;
+                const Rgba* from = &one.rgba[static_cast<std::size_t>(render::TilePixels::kStart[level])];
+                Rgba* to = &map.levels[level][index / per_side * side * stride + index % per_side * side];
+                for (std::size_t y = 0; y < side; ++y) std::copy_n(from + y * side, side, to + y * stride);
+            }
+        }
     });
-    for (std::size_t level = 1; level < render::kTextureLevels; ++level) {
-        const std::size_t side = padded >> level;
-        map.levels[level].resize(side * side);
-        parallel_for(side, 64, [&](std::size_t begin, std::size_t end) {
-            halve(map.levels[level - 1].data(), map.levels[level].data(), side, begin, end);
-        });
-    }
     return map;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <map>
 #include <optional>
 #include <span>
@@ -22,7 +23,9 @@ struct TexelUpdate {
 };
 
 /// The shown texture, updated tile by tile: sRGB colour and coded ink height (`render::code_of_height`). Gutters
-/// continue over seams.
+/// continue over seams. A coarse texel is the mean of the texels of charts and gutters in it; what is bare between
+/// charts has no part in it, so that lookups on the model show no line at seams up to level 3. At level 4, the gutter
+/// of 4 texels is narrower than the 8 texels that a lookup reaches beyond a chart.
 class Texture {
   public:
     Texture(const stroke::Document& painting, const ProgressFn& progress = {});
@@ -48,6 +51,7 @@ class Texture {
     std::uint32_t padded_size() const { return padded_; }
 
   private:
+    void find_filled(const atlas::TexelMap& map, const atlas::Gutter& gutter);
     const std::vector<render::GlBox>& boxes_of(std::uint32_t tile, const atlas::TexelMap& map);
     void refresh_heights(std::span<const std::uint32_t> slots, const stroke::Document& painting);
     render::TilePixels tile(std::uint32_t index) const;
@@ -64,6 +68,7 @@ class Texture {
     std::vector<std::uint8_t> veil_;                                       ///< [size²], 0–255; empty: none
     Marks marks_;
     std::unordered_map<std::uint32_t, const std::array<std::uint8_t, atlas::kTileTexels>*> marks_of_tile_;
+    std::vector<std::bitset<atlas::kTileTexels>> filled_;  ///< by tile: texels of charts and gutters
 };
 
 }  // namespace tuft::app
