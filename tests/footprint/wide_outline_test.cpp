@@ -8,6 +8,7 @@
 #include "brush/preset/rest_shape.h"
 #include "brush/tuft/tuft.h"
 #include "footprint/outline/cuts.h"
+#include "footprint/outline/hair.h"
 #include "footprint/outline/outline.h"
 
 namespace tuft::footprint {
@@ -16,21 +17,26 @@ namespace {
 constexpr double kCell = 5e-5;
 const Frame kFlat;
 
-/// A flat dragged over the plane along −y on its broad side, leaning ahead, wet or dry.
-brush::TuftState dragged(const std::string& name, double wet = 1) {
-    brush::Tuft tuft = brush::make_tuft(brush::load_preset(name), 5);
-    tuft.wetness = tuft.ink_left = wet;
+/// A flat dragged over the plane on its broad side, leaning ahead: along −y, with `way` −1 along y.
+brush::TuftState dragged(brush::Tuft tuft, int way) {
     brush::TuftState state;
     const brush::ContactPlane plane;
     const double length = tuft.preset.length;
     for (int i = 0; i <= 90; ++i) {
         brush::Pose pose;
-        pose.rotation = glm::angleAxis(0.4, Vec3{1, 0, 0});
-        pose.position = {0, -2e-4 * std::max(0, i - 30),
+        pose.rotation = glm::angleAxis(way * 0.4, Vec3{1, 0, 0});
+        pose.position = {0, -2e-4 * way * std::max(0, i - 30),
                          length * std::cos(0.4) - 0.2 * length * std::min(1.0, i / 30.0)};
         state = brush::step(tuft, pose, std::span(&plane, 1), 1e-3);
     }
     return state;
+}
+
+/// Along −y, wet or dry.
+brush::TuftState dragged(const std::string& name, double wet = 1) {
+    brush::Tuft tuft = brush::make_tuft(brush::load_preset(name), 5);
+    tuft.wetness = tuft.ink_left = wet;
+    return dragged(std::move(tuft), 1);
 }
 
 double coverage_area(const Footprint& f) {
@@ -316,6 +322,59 @@ Trail lying_trail(int branch, const Vec2& at, double a, double b) {
     }
     trail.trunk = 2;
     return trail;
+}
+
+/// A strip's hair lies where its places are along its broad side, in whichever axes its section is described.
+TEST(WideOutline, HairOfAStripKeepsItsPlaceWhenItsAxesTurn) {
+    brush::Preset p = brush::load_preset("flat-12");
+    const brush::Bundles bundles = brush::make_bundles(p, 5);
+    constexpr double kLean = 0.3;  // radians: the strip's higher edge is also on the surface
+    constexpr int kBranch = 2;
+    Recycled<Trail> trails{lying_trail(kBranch, {0, 0}, 1e-3, 4e-4)};
+    for (Cut& cut : trails[0].cuts) {
+        cut.e = {0, std::cos(kLean), std::sin(kLean)}, cut.m = {0, -std::sin(kLean), std::cos(kLean)};
+        cut.z = -1e-3;
+    }
+    const Recycled<HairContactPoint> points = hair_contact_points(trails, bundles, 5);
+    ASSERT_GT(points.size(), 4u);
+    double least = 1, most = -1;
+    for (const HairContactPoint& point : points) {
+        const double x = brush::in_branch(bundles, bundles.place[point.bundle], 5).place.x;
+        // Its underside is wholly below the surface, so its middle is where it is.
+        EXPECT_NEAR(point.at.y, 1e-3 * x * std::cos(kLean), 1e-12);
+        least = std::min(least, x), most = std::max(most, x);
+    }
+    EXPECT_LT(least, -0.4) << "hair of both edges is on the surface";
+    EXPECT_GT(most, 0.4);
+    for (Cut& cut : trails[0].cuts) cut.e = -cut.e, cut.m = -cut.m, cut.turn = {-1, 0};
+    const Recycled<HairContactPoint> turned = hair_contact_points(trails, bundles, 5);
+    ASSERT_EQ(turned.size(), points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_EQ(turned[i].bundle, points[i].bundle);
+        EXPECT_NEAR(glm::distance(turned[i].at, points[i].at), 0, 1e-12);
+    }
+}
+
+/// Hair lies beside the path where it is set in the ferrule, to whichever side a flat is bent: its sections turn by
+/// half a turn with the side.
+TEST(WideOutline, HairOfAFlatLiesOnItsOwnSide) {
+    for (const char* name : {"flat-12", "filbert-12"}) {
+        const brush::Preset p = brush::load_preset(name);
+        for (const int way : {1, -1}) {
+            const brush::Tuft tuft = brush::make_tuft(p, 5);
+            const brush::TuftState state = dragged(tuft, way);
+            const brush::ContactPlane plane;
+            Recycled<Trail> trails = find_trails(state, kFlat, node_planes(state, std::span(&plane, 1)), p.length, 0);
+            fill_rows(trails);
+            const Recycled<HairContactPoint> points =
+                hair_contact_points(trails, tuft.bundles, static_cast<int>(state.branches.size()));
+            ASSERT_GT(points.size(), 20u) << name;
+            // Pressed hair spreads by a tenth, and a filbert's toe draws in: a spine's width, 2.4 mm, at most.
+            for (const HairContactPoint& point : points)
+                EXPECT_NEAR(point.at.x, 0.5 * p.width * tuft.bundles.place[point.bundle].x, 1.2e-3)
+                    << name << ' ' << way;
+        }
+    }
 }
 
 /// The strips of two spines that splay meet midway between them, to three times their half-width, at constant area.

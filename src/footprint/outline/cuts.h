@@ -27,6 +27,10 @@ struct Cut {
     double overlap() const { return half_height() - z; }
     /// Point of the ellipse at ω, and of its inside.
     Vec2 at(double cos_w, double sin_w) const { return centre + a * cos_w * Vec2(e) + b * sin_w * Vec2(m); }
+    /// Axes of a strip's hair, metres: of a place (x, y) in it, see brush::in_branch, the point is
+    /// centre + x broad + y thick.
+    Vec3 broad() const { return turn.x * (a * e) + turn.y * (b * m); }
+    Vec3 thick() const { return turn.x * (b * m) - turn.y * (a * e); }
 };
 
 /// The section at the part f of the way between two, linear in all that it has.

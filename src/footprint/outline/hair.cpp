@@ -37,14 +37,17 @@ constexpr double kSameEnd = 0.01;      // of the length
 constexpr double kLeastLength = 1e-6;  // of the length, that hair touches with at least
 constexpr double kBeyond = 0.5;        // widest half width that the outermost hair's ink may reach further
 
-/// Height of a place over its section's centre, metres.
-double height_over_centre(const Cut& cut, const Vec2& place) {
-    return cut.a * place.x * cut.e.z + cut.b * place.y * cut.m.z;
+/// Returns true where a place is in the half of its section that faces the surface. That of a strip is one of its broad
+/// sides: hair at the higher edge of a leaning strip is also on the surface.
+bool is_lower(const Trail& trail, const Cut& cut, const Vec2& place) {
+    if (trail.strip) return place.y * cut.thick().z <= 0;
+    return cut.a * place.x * cut.e.z + cut.b * place.y * cut.m.z <= 0;
 }
 
 /// Returns true where the section's underside at the place is at or below the surface.
 bool is_touching(const Trail& trail, const Cut& cut, const Vec2& place) {
     const double chord = trail.chord(place.x);
+    if (trail.strip) return cut.z + place.x * cut.broad().z - chord * std::abs(cut.thick().z) <= 0;
     return cut.z + cut.a * place.x * cut.e.z - chord * cut.b * std::abs(cut.m.z) <= 0;
 }
 
@@ -191,10 +194,12 @@ Recycled<Strand> strands_of(Recycled<LowerBristle>& lower, const brush::Bundles&
 
 /// Returns the point where the section at lateral position x meets the surface, or its middle where all of it is below.
 Vec2 point_on_surface(const Trail& trail, const Cut& cut, double x) {
-    const double height = cut.b * cut.m.z, need = cut.z + cut.a * x * cut.e.z;
+    const double height = trail.strip ? cut.thick().z : cut.b * cut.m.z;
+    const double need = cut.z + (trail.strip ? x * cut.broad().z : cut.a * x * cut.e.z);
     const double chord = trail.chord(x);
-    const double y = std::abs(height) > 1e-9 ? std::clamp(-need / height, -chord, chord) : 0;
-    return cut.at(x, need < -chord * std::abs(height) ? 0 : y);
+    const double meets = std::abs(height) > 1e-9 ? std::clamp(-need / height, -chord, chord) : 0;
+    const double y = need < -chord * std::abs(height) ? 0 : meets;
+    return trail.strip ? cut.centre + x * Vec2(cut.broad()) + y * Vec2(cut.thick()) : cut.at(x, y);
 }
 
 /// Picture into which strands are drawn.
@@ -214,7 +219,7 @@ class StrandPen {
         if (!at_.empty() && at_.back() + 1 != part.end) at_.push_back(part.end - 1);
         across_.resize(at_.size());
         for (std::size_t k = 0; k < at_.size(); ++k) {
-            const Vec2 e(trail_.cuts[at_[k]].e);
+            const Vec2 e(trail_.strip ? trail_.cuts[at_[k]].broad() : trail_.cuts[at_[k]].e);
             across_[k] = glm::length(e) > 1e-9 ? glm::normalize(e) : Vec2{1, 0};
             widest_ = std::max(widest_, trail_.cuts[at_[k]].a);
         }
@@ -271,7 +276,9 @@ class StrandPen {
                0.5 * (line.past_hi - line.past_lo) * across_[k];
     }
     double half_width(const Line& line, std::size_t k) const {
-        return line.half * trail_.cuts[at_[k]].a / picture_.cell + 0.5 * (line.past_hi + line.past_lo);
+        const Cut& cut = trail_.cuts[at_[k]];
+        const double a = trail_.strip ? glm::length(Vec2(cut.broad())) : cut.a;
+        return line.half * a / picture_.cell + 0.5 * (line.past_hi + line.past_lo);
     }
     /// Position of `at`, along the hair, between the cuts k and k + 1 of the pen, 0–1.
     double fraction(std::size_t k, double at) const {
@@ -310,7 +317,7 @@ bool for_each_contact(const Trail& trail, const brush::Bundles& bundles, int bra
         const BristlePlace placed(bundles, bundles.place[k], branches);
         for (std::size_t i = 0; i < count; i += kStride) {
             const Vec2* at = placed.at(trail, i);
-            if (!at || height_over_centre(trail.cuts[i], *at) > 0 || !is_touching(trail, trail.cuts[i], *at)) continue;
+            if (!at || !is_lower(trail, trail.cuts[i], *at) || !is_touching(trail, trail.cuts[i], *at)) continue;
             const std::size_t a = i > 0 ? i - 1 : i, b = std::min(i + 1, count - 1);
             // The cap of an edge that just touches has no length of hair.
             f(k, i, *at, std::max(std::abs(trail.along[a] - trail.along[b]), kLeastLength));
@@ -387,7 +394,8 @@ Recycled<LowerBristle> find_lower_bristles(const TrailPart& part, const brush::B
     Vec2 height{0};
     for (std::size_t i = part.begin; i + 1 < part.end; ++i) {
         const Cut& cut = trail.cuts[i];
-        height += std::abs(trail.along[i + 1] - trail.along[i]) * Vec2{cut.a * cut.e.z, cut.b * cut.m.z};
+        const Vec2 own = trail.strip ? Vec2{0, cut.thick().z} : Vec2{cut.a * cut.e.z, cut.b * cut.m.z};
+        height += std::abs(trail.along[i + 1] - trail.along[i]) * own;
     }
     Recycled<LowerBristle> lower;
     for (std::size_t k = 0; k < places.size(); ++k) {

@@ -53,8 +53,7 @@ void add_shadow(const Cut& cut, Recycled<Vec2>& corners) {
 
 /// The same of a strip: its corners at the scale at which it meets the surface when the ellipse does, cut by it.
 void add_strip_shadow(const Cut& cut, std::span<const Vec2> strip, Recycled<Vec2>& corners) {
-    const Vec3 e = cut.a * cut.e, m = cut.b * cut.m;
-    const Vec3 broad = cut.turn.x * e + cut.turn.y * m, thick = cut.turn.x * m - cut.turn.y * e;
+    const Vec3 broad = cut.broad(), thick = cut.thick();
     double reach = 0;
     for (const Vec2& c : strip) reach = std::max(reach, -(c.x * broad.z + c.y * thick.z));
     const double half = cut.half_height(), z = half > 0 ? cut.z * reach / half : cut.z;

@@ -14,8 +14,7 @@ constexpr double kAlongBroad = 0.7;  // cosine from a section's wide axis to its
 
 /// Half the broad side of a section of a strip, metres, on the surface.
 Vec2 broad_half(const Cut& cut) {
-    const Vec3 broad = cut.turn.x * cut.a * cut.e + cut.turn.y * cut.b * cut.m;
-    return Trail::kStripChord * Vec2(broad);
+    return Trail::kStripChord * Vec2(cut.broad());
 }
 
 /// Factors on both halves of a section, towards its broad axis and against it.

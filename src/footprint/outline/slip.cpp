@@ -20,7 +20,8 @@ Place place_at(const Trail& trail, double along) {
                       i = j - 1;
     const double run = a[i] - a[j], f = run > 1e-12 ? std::clamp((a[i] - along) / run, 0.0, 1.0) : 0;
     const Cut &p = trail.cuts[i], &q = trail.cuts[j];
-    return {glm::mix(p.centre, q.centre, f), glm::mix(p.a * Vec2(p.e), q.a * Vec2(q.e), f)};
+    const auto half = [&](const Cut& cut) { return trail.strip ? Vec2(cut.broad()) : cut.a * Vec2(cut.e); };
+    return {glm::mix(p.centre, q.centre, f), glm::mix(half(p), half(q), f)};
 }
 
 /// The trail of the same branch that has most of its hair.
