@@ -17,7 +17,7 @@ endif()
 
 # tidy looks at the modules of TUFT_TIDY.
 find_program(CLANG_TIDY NAMES clang-tidy-14 clang-tidy)
-set(TUFT_TIDY core mesh brush app CACHE STRING "Modules of src/ that the target tidy looks at")
+set(TUFT_TIDY core mesh brush app decal motion haptic pictures variants writer io/font io/sheet CACHE STRING "Modules of src/ that the target tidy looks at")
 if(CLANG_TIDY)
   set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
   add_custom_target(tidy COMMAND ${CMAKE_SOURCE_DIR}/.ci/tidy.sh ${CLANG_TIDY} ${CMAKE_BINARY_DIR} ${TUFT_TIDY}
