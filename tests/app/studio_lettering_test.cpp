@@ -63,6 +63,16 @@ TEST_F(StudioLettering, EachDirectionIsChosenInThePanelAndALineThatIsTooLongIsRe
     EXPECT_EQ(groups.size(), 3u) << "each click is a group";
 }
 
+// Why a text cannot lie under the cursor is shown only while the cursor is on the model: the buttons stay where they
+// are.
+TEST_F(StudioLettering, TheFaultOfAPlaceMovesNoButtonAwayFromAClick) {
+    const Ran ran = studio(written(kYong) +
+                               "click \"Curve##direction\"\nmove 52%,62%\nwait 0.2\nexpect label \"Text fault\"\n"
+                               "click Round\nmove 52%,62%\nwait 0.2\npress\nrelease\nwait-ready\nexpect strokes 5\n",
+                           kWindow);
+    EXPECT_EQ(ran.status, 0) << ran.err;
+}
+
 // A brush taken from the rack while the tool is active is the one that writes.
 TEST_F(StudioLettering, TheStylesBrushIsUsedUntilAnotherOneIsTaken) {
     const Ran ran = studio(written(kYong) +

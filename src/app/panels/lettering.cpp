@@ -146,7 +146,6 @@ void lettering_panel(Session& s) {
     keep_in_view(s.view, pad);
     ImGui::BeginDisabled(s.reported.file.viewing);
     text_field(ui, l, ImGui::IsWindowAppearing() && l.wanted.text.empty() && !s.reported.file.viewing);
-    fault_line(ui, l.fault.empty() ? s.tools.place_fault : l.fault);
     style_row(ui, l);
     direction_row(ui, l.direction);
     source_row(ui, l, s.dialogs.file);
@@ -157,6 +156,8 @@ void lettering_panel(Session& s) {
     ImGui::SameLine();
     ui.toggle("mm", s.tools.shows_place, "Place in millimetres");
     if (s.tools.shows_place) place_fields(ui, s.tools);
+    // Last: it comes and goes with the cursor over the model, and no button may move under a click.
+    fault_line(ui, l.fault.empty() ? s.tools.place_fault : l.fault);
     ImGui::EndDisabled();
     ImGui::End();
 }
