@@ -261,6 +261,33 @@ Evenness draped_area(const Model& model, double half_length, double height, doub
     return measure(painting, model, 5e-3, [&](const Vec3& p) { return round_z(p, radius); });
 }
 
+/// A sword's stripe draped in an S of `height` over half a model.
+Evenness draped_stripe(const Model& model, double half_length, double height) {
+    Placement place = before(model, model.mesh->bounds.centre().z);
+    place.mapping = SurfaceMapping::drape;
+    Document painting(model);
+    painting.paint(stripe(wave(half_length, height), place));
+    const double radius = std::hypot(place.origin.x, place.origin.y);
+    return measure(painting, model, 5e-3, [&](const Vec3& p) { return round_z(p, radius); });
+}
+
+/// Over the wall of a bowl, which falls away from a landing blade along and across. A blade that falls to its side
+/// draws twice its edge, and rises over 100 mm.
+TEST(Pinstripe, AnSOverABowlIsEven) {
+    const Evenness e = draped_stripe(shipped("bowl.ply", 4096), 75e-3, 8e-3);
+    record(e);
+    EXPECT_LE(e.deviation, 0.03 * e.mean);
+    EXPECT_LT(e.mean, 0.8e-3) << "on its edge, 0.6 mm";
+}
+
+/// Once round half a ball.
+TEST(Pinstripe, AStripeOverABallIsEven) {
+    const Evenness e = draped_stripe(shipped("sphere.ply", 4096), 75e-3, 0);
+    record(e);
+    EXPECT_LE(e.deviation, 0.03 * e.mean);
+    EXPECT_LT(e.mean, 0.8e-3) << "on its edge, 0.6 mm";
+}
+
 /// Over 120° of a ball, as curved across as along.
 TEST(Pinstripe, ALineAsAnAreaOverABallIsEven) {
     const Evenness e = draped_area(shipped("sphere.ply", 4096), 52e-3, 9e-3, 50e-3);

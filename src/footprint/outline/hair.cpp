@@ -44,10 +44,11 @@ bool is_lower(const Trail& trail, const Cut& cut, const Vec2& place) {
     return cut.a * place.x * cut.e.z + cut.b * place.y * cut.m.z <= 0;
 }
 
-/// Returns true where the section's underside at the place is at or below the surface.
+/// Returns true where the section's underside at the place is at or below the surface. All of a strip that touches
+/// gives its ink: a leaning one comes down bundle by bundle, and would be of one bundle's ink for a stamp.
 bool is_touching(const Trail& trail, const Cut& cut, const Vec2& place) {
+    if (trail.strip) return cut.overlap() >= 0;
     const double chord = trail.chord(place.x);
-    if (trail.strip) return cut.z + place.x * cut.broad().z - chord * std::abs(cut.thick().z) <= 0;
     return cut.z + cut.a * place.x * cut.e.z - chord * cut.b * std::abs(cut.m.z) <= 0;
 }
 

@@ -40,7 +40,9 @@ HolderOptions holder_options(const brush::Preset& preset) {
             .hover = 0.1 * preset.length,
             .steady = 0,
             .tip_lag = {},
-            .tip_lag_turn = std::min(HolderOptions{}.tip_lag_turn, 0.075 * preset.length)};  // a fine tuft turns sooner
+            // A fine tuft turns sooner, and a blade is led by its painter along its line.
+            .tip_lag_turn = std::min(preset.slant > 0 ? 0.4e-3 : HolderOptions{}.tip_lag_turn, 0.075 * preset.length),
+            .blade_landing = preset.slant > 0 ? 0.4 * preset.length : 0};
 }
 
 HolderOptions holder_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh) {

@@ -90,7 +90,11 @@ struct HolderOptions {
     /// Change of the tip lag by a lean: metres ahead and to the path's left, for a depth (metres) and a lean along the
     /// path and to its left (radians); `TiltedTipLag::at`. Empty: no change.
     std::function<Vec2(double depth, const Vec2& lean)> tip_lag_change = {};
-    double tip_lag_turn = 0.0015;  ///< metres of travel in which the tip lag follows a turn
+    /// Metres of travel in which the tip lag follows a turn; less of a blade, which slips across its edge meanwhile.
+    double tip_lag_turn = 0.0015;
+    /// Metres of travel over which a blade, whose longest hair stands ahead of its axis, lands leaning ahead; 0: no
+    /// blade.
+    double blade_landing = 0;
 };
 
 /// Returns the working depth of a brush, metres: half of the free hair.

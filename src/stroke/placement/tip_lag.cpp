@@ -180,7 +180,7 @@ bool set_down(StrokeSamples& trace, const HolderOptions& options, const Vec2& ah
 // Surface that differs from the levelled one leans the tuft, and a tuft that leans tip ahead is pushed. The holder
 // is tipped ahead by more than that until the tuft trails.
 void lean_ahead(StrokeSamples& trace, const HolderOptions& options, const Vec2& ahead) {
-    const double until = kLeanTurns * options.tip_lag_turn;
+    const double until = std::max(kLeanTurns * options.tip_lag_turn, options.blade_landing);
     double gone = 0;
     for (std::size_t i = 0; i < trace.samples.size() && gone < until; ++i) {
         StrokeSample& s = trace.samples[i];
@@ -211,7 +211,9 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     const Vec2 sets_out = first_direction(trace.samples, kAiming * options.tip_lag_turn);
     const bool pressed = set_down(trace, options, sets_out);
     set_down_plumb(trace, options);
-    if (pressed && sets_out != Vec2(0)) lean_ahead(trace, options, sets_out);
+    // Over a convex surface a blade's point meets ground that falls ahead of it, however softly it lands: it would
+    // slide on ahead of the hand and fall to its side.
+    if ((pressed || options.blade_landing > 0) && sets_out != Vec2(0)) lean_ahead(trace, options, sets_out);
     Vec2 dragged = first - options.tip_lag_turn * sets_out, before = first;
     for (StrokeSample& s : trace.samples) {
         const Vec2 p(s.position);

@@ -64,7 +64,8 @@ inline constexpr double kHoverTime = 0.05;  ///< seconds of the tip between the 
 /// from the first touch in the initial direction of the trace. Where the path reverses, the tip lag passes through
 /// zero. A trace that begins pressed gets samples before its first one, at the same place and earlier in time, whose
 /// pressure rises to the first; the holder moves at `kSetDownPace` times the trace's speed, so that the tip touches
-/// first and trails. A holder upright to 0.05 rad sets the brush down plumb and reaches its lean within 0.3 lengths of
+/// first and trails. It leans ahead by 0.12 rad meanwhile, and so does that of a blade at any landing, over
+/// `blade_landing`. A holder upright to 0.05 rad sets the brush down plumb and reaches its lean within 0.3 lengths of
 /// the tuft.
 ///
 /// The hand's speed bounds the holder's. Over a surface of curvature κ, while the tuft is pressed,
