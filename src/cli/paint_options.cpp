@@ -10,6 +10,7 @@
 #include "core/text/text.h"
 #include "stroke/drawing/free_area.h"
 #include "stroke/journal/recorded_stroke.h"
+#include "writer/layout/text_layout.h"
 
 namespace tuft::cli {
 
@@ -252,7 +253,8 @@ void add_write_options(CLI::App* w, Write& write) {
     w->add_option("--direction", write.direction,
                   "horizontal, vertical (columns from right to left), rim (level round the model, in the middle "
                   "--place) or curve (along --curve)")
-        ->check(CLI::IsMember({"horizontal", "vertical", "rim", "curve"}));
+        ->check(
+            CLI::IsMember(std::vector<std::string>(writer::kDirectionNames.begin(), writer::kDirectionNames.end())));
     w->add_option("--curve", write.curve, "line on the model that the text runs along: the first of a stroke file");
     w->add_option("--spacing", write.spacing, "between characters, in parts of their width (default: the style's)")
         ->check(number_in(0.1, 10.0));

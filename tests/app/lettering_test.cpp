@@ -155,7 +155,7 @@ class LetteringOnModel : public BothPrograms {
                               .brush = l.style_brush ? "" : brush,
                               .ink = ink,
                               .fit = l.fit,
-                              .name = l.text->group};
+                              .group = {.name = l.text->group}};
             std::string words = place_words(l, command.place, brush);
             return std::pair<Command, std::string>(std::move(command), std::move(words));
         });
@@ -203,7 +203,7 @@ TEST_F(LetteringOnModel, IsStoppedBeforeItsFirstStrokeWithNothingLeftBehind) {
     const LetteringPlace place = place_lettering(l, *work.model->query, at, {0, 0, 1}, {1, 0, 0}, {0, 0, 1});
     {
         PaintThread painter(std::move(work));
-        painter.post(PaintText{.text = *l.text, .place = place, .ink = "carbon", .name = "stopped"});
+        painter.post(PaintText{.text = *l.text, .place = place, .ink = "carbon", .group = {.name = "stopped"}});
         while (painter.take().status.progress.busy.empty()) std::this_thread::yield();
         painter.stop_long_work();
         painter.wait_idle(60);

@@ -15,6 +15,10 @@ class StudioLettering : public StudioProgram {
     std::string written(const std::string& text) const {
         return kBowl + "set tool text\nset text " + text + "\nset text-size 20\nwait-ready\nmove 52%,62%\nwait 0.1\n";
     }
+    /// A click in the middle of the bowl's wall, after which the journal has `n` strokes.
+    static std::string click_for(int n) {
+        return "move 52%,62%\nwait 0.1\npress\nrelease\nwait-ready\nexpect strokes " + std::to_string(n) + "\n";
+    }
     std::vector<stroke::JournalEntry> project(const std::string& name) const {
         return io::Project::open(path(name)).strokes();
     }
@@ -22,11 +26,11 @@ class StudioLettering : public StudioProgram {
 
 // The field has the keyboard when the tool is taken for the first time: one types, and clicks on the model.
 TEST_F(StudioLettering, ATypedTextIsWrittenWhereOneClicksAndUndoneAsOne) {
-    const Ran ran = studio(kBowl + "set tool text\nwait 0.3\ntype " + kYong +
-                               "\nwait-ready\nset text-size 20\nmove 52%,62%\nwait 0.1\npress\nrelease\nwait-ready\n"
-                               "expect strokes 5\nexpect message --direction\nsave work.tuft\nwait-ready\nundo\n"
-                               "wait-ready\nexpect strokes 0\nredo\nwait-ready\nexpect strokes 5\n",
-                           kWindow);
+    const Ran ran =
+        studio(kBowl + "set tool text\nwait 0.3\ntype " + kYong + "\nwait-ready\nset text-size 20\n" + click_for(5) +
+                   "expect message --direction\nsave work.tuft\nwait-ready\nundo\n"
+                   "wait-ready\nexpect strokes 0\nredo\nwait-ready\nexpect strokes 5\n",
+               kWindow);
     ASSERT_EQ(ran.status, 0) << ran.err;
     const auto strokes = project("work.tuft");
     ASSERT_EQ(strokes.size(), 5u);
@@ -47,9 +51,8 @@ TEST_F(StudioLettering, WithoutATextOrWithAMissingCharacterAClickWritesNothing) 
 
 TEST_F(StudioLettering, EachDirectionIsChosenInThePanelAndALineThatIsTooLongIsRefused) {
     const Ran ran = studio(
-        written(kYong) +
-            "click Down\nmove 52%,62%\nwait 0.1\npress\nrelease\nwait-ready\nexpect strokes 5\nclick Round\nmove "
-            "52%,62%\nwait 0.1\npress\nrelease\nwait-ready\nexpect strokes 10\nclick \"Curve##direction\"\nmove "
+        written(kYong) + "click Down\n" + click_for(5) + "click Round\n" + click_for(10) +
+            "click \"Curve##direction\"\nmove "
             "52%,62%\nwait 0.2\nexpect label \"Text fault\"\npress\nrelease\nwait-ready\nexpect strokes 10\n"
             // The curve of the tool Curve, before it is painted.
             "set tool curve\nwait 0.1\nmove 46%,62%\npress\nrelease\nmove 52%,64%\npress\nrelease\nmove "
@@ -75,10 +78,8 @@ TEST_F(StudioLettering, TheFaultOfAPlaceMovesNoButtonAwayFromAClick) {
 
 // A brush taken from the rack while the tool is active is the one that writes.
 TEST_F(StudioLettering, TheStylesBrushIsUsedUntilAnotherOneIsTaken) {
-    const Ran ran = studio(written(kYong) +
-                               "press\nrelease\nwait-ready\nexpect strokes 5\nclick wolf-small\nmove 52%,62%\nwait "
-                               "0.1\npress\nrelease\nwait-ready\nexpect strokes 10\nsave work.tuft\nwait-ready\n",
-                           kWindow);
+    const Ran ran = studio(
+        written(kYong) + click_for(5) + "click wolf-small\n" + click_for(10) + "save work.tuft\nwait-ready\n", kWindow);
     ASSERT_EQ(ran.status, 0) << ran.err;
     const auto strokes = project("work.tuft");
     ASSERT_EQ(strokes.size(), 10u);
@@ -89,10 +90,9 @@ TEST_F(StudioLettering, TheStylesBrushIsUsedUntilAnotherOneIsTaken) {
 // The brush that a project is opened with is the last one in its journal: not a choice of another brush than the
 // style's, which is larger for larger characters.
 TEST_F(StudioLettering, AProjectOpenedAgainKeepsTheStylesBrushAndItsGroup) {
-    const std::string write = "move 52%,62%\nwait 0.1\npress\nrelease\nwait-ready\n";
-    const Ran ran = studio(written(kYong) + write + "save work.tuft\nwait-ready\nclose\nwait 0.2\nopen \"" +
+    const Ran ran = studio(written(kYong) + click_for(5) + "save work.tuft\nwait-ready\nclose\nwait 0.2\nopen \"" +
                                path("work.tuft") + "\"\nwait-ready\nexpect strokes 5\nexpect label \"group " + kYong +
-                               "\"\nset text-size 30\n" + write + "expect strokes 10\nwait 0.2\n",
+                               "\"\nset text-size 30\n" + click_for(10) + "wait 0.2\n",
                            kWindow);
     ASSERT_EQ(ran.status, 0) << ran.err;
     const auto strokes = project("work.tuft");

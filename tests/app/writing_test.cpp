@@ -94,7 +94,7 @@ class WritingOnModel : public BothPrograms {
             EXPECT_TRUE(at);
             const stroke::Placement placement = place_writing(w, query, at->position, -along, right, -along);
             return std::pair<Command, std::string>(
-                PaintDrawing{placed_writing(w, placement, hand), stroke::group_name(w.file)},
+                PaintDrawing{placed_writing(w, placement, hand), {.name = stroke::group_name(w.file)}},
                 place_words(w, placement));
         });
     }

@@ -39,20 +39,6 @@ std::string quoted(const std::string& text) {
     return out + "'";
 }
 
-const char* direction_word(writer::Direction direction) {
-    switch (direction) {
-        case writer::Direction::horizontal:
-            return "horizontal";
-        case writer::Direction::vertical:
-            return "vertical";
-        case writer::Direction::rim:
-            return "rim";
-        case writer::Direction::curve:
-            return "curve";
-    }
-    return "";
-}
-
 /// The curve up to where it leaves the surface, and its point nearest to `at`.
 LetteringPath path_of(const mesh::SurfaceQuery& query, const std::vector<CurvePoint>& points, const Vec3& at) {
     LetteringPath on;
@@ -216,7 +202,7 @@ std::vector<std::vector<PreviewPoint>> preview_lines(const mesh::SurfaceQuery& q
 std::string place_words(const Lettering& l, const LetteringPlace& place, const std::string& brush) {
     const writer::TextRequest& wanted = l.wanted;
     std::string words = fmt::format("--text {} --style {} --size {:.3f} --direction {}", quoted(wanted.text),
-                                    wanted.style, l.side / kMillimetre, direction_word(l.direction));
+                                    wanted.style, l.side / kMillimetre, writer::name_of(l.direction));
     if (!wanted.glyphs.empty()) words += " --glyphs " + quoted(wanted.glyphs.string());
     if (l.spacing > 0) words += fmt::format(" --spacing {:.3f}", l.spacing);
     if (l.line_spacing > 0) words += fmt::format(" --line-spacing {:.3f}", l.line_spacing);

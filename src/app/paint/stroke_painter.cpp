@@ -121,7 +121,7 @@ void StrokePainter::paint_drawing(PaintDrawing& command) {
     cancel();
     const ProgressFn shown = context_.progress("Placing the drawing");
     shown("", 0);
-    paint_placed(entries_of(command), command, shown);
+    paint_group(entries_of(command), command.group, shown);
 }
 
 void StrokePainter::paint_text(PaintText& command) {
@@ -135,16 +135,15 @@ void StrokePainter::paint_text(PaintText& command) {
     fit.film = film_of_inks();
     std::vector<stroke::JournalEntry> entries =
         lettering_entries(command.text, command.place, hand, fit, widths_, plans);
-    paint_placed(std::move(entries), command, context_.progress("Writing the text"));
+    paint_group(std::move(entries), command.group, context_.progress("Writing the text"));
 }
 
 // Paints entries and their symmetric copies as one undo step, each copy as a group.
-template <typename Placed>
-void StrokePainter::paint_placed(std::vector<stroke::JournalEntry> entries, const Placed& command,
-                                 const ProgressFn& shown) {
+void StrokePainter::paint_group(std::vector<stroke::JournalEntry> entries, const GroupSettings& settings,
+                                const ProgressFn& shown) {
     const std::size_t in_group = std::max<std::size_t>(1, entries.size());
     std::vector<stroke::JournalEntry> all = std::move(entries);
-    for (const stroke::PoseMap& map : stroke::symmetry_copies(command.symmetry))
+    for (const stroke::PoseMap& map : stroke::symmetry_copies(settings.symmetry))
         for (std::size_t i = 0; i < in_group && i < all.size(); ++i)
             all.push_back(stroke::copy_of(all[i], map, stroke::CopyReading::upright));
     const auto length_of = [&](const std::string& brush) {
@@ -162,12 +161,12 @@ void StrokePainter::paint_placed(std::vector<stroke::JournalEntry> entries, cons
         if (!shown("", static_cast<double>(i) / static_cast<double>(all.size()))) break;
         context_.work.autosave.prepare(*context_.work.document, stroke::brush_of(all[i]), stroke::ink_of(all[i]));
         if (stroke::PaintStroke* stroke = all[i].as<stroke::PaintStroke>()) {
-            stroke->layer = context_.layer_of(command.layer);
-            stroke->mask = command.mask;
-            if (command.wet) stroke->settings.film = stroke::FilmModel::wet;
+            stroke->layer = context_.layer_of(settings.layer);
+            stroke->mask = settings.mask;
+            if (settings.wet) stroke->settings.film = stroke::FilmModel::wet;
         }
-        if (i % in_group == 0 && !command.name.empty())
-            group = {context_.work.document->journal().next_group_id(), command.name};
+        if (i % in_group == 0 && !settings.name.empty())
+            group = {context_.work.document->journal().next_group_id(), settings.name};
         all[i].group = group;
         const stroke::StrokeReport report = context_.work.document->paint(std::move(all[i]));
         ink += report.ink_given;
@@ -177,7 +176,7 @@ void StrokePainter::paint_placed(std::vector<stroke::JournalEntry> entries, cons
         context_.publisher.publish(true);
     }
     const auto& parts = context_.work.document->parts().table().parts;
-    if (ink == 0 && touched && command.mask == 0 && context_.history.done.back().made == all.size() &&
+    if (ink == 0 && touched && settings.mask == 0 && context_.history.done.back().made == all.size() &&
         std::ranges::any_of(parts, [](const stroke::Part& part) { return part.locked && !part.hidden; }))
         context_.outbox.report("The drawing leaves no ink: what it meets is locked");
     if (context_.history.done.back().made == 0) context_.history.done.pop_back();

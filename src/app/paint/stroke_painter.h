@@ -34,8 +34,7 @@ class StrokePainter {
     void add_copies(const stroke::JournalEntry& original, std::size_t& made);
     std::function<double(const std::string&)> film_of_inks() const;
     std::vector<stroke::JournalEntry> entries_of(PaintDrawing& command);
-    template <typename Placed>
-    void paint_placed(std::vector<stroke::JournalEntry> entries, const Placed& command, const ProgressFn& shown);
+    void paint_group(std::vector<stroke::JournalEntry> entries, const GroupSettings& settings, const ProgressFn& shown);
 
     PaintContext& context_;
     BeginStroke current_;

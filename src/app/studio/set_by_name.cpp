@@ -112,7 +112,8 @@ constexpr Setting kToolSettings[] = {
     {"text-glyphs", [](Session& s, const SettingValue& v) { s.tools.lettering.wanted.glyphs = v.text; }},
     {"text-direction",
      [](Session& s, const SettingValue& v) {
-         s.tools.lettering.direction = v.choice<writer::Direction>({"horizontal", "vertical", "rim", "curve"});
+         s.tools.lettering.direction =
+             v.choice<writer::Direction>({writer::kDirectionNames.begin(), writer::kDirectionNames.end()});
      }},
     {"text-size", [](Session& s, const SettingValue& v) { s.tools.lettering.side = v.within(1, 2000) * kMillimetre; }},
     {"text-spacing", [](Session& s, const SettingValue& v) { s.tools.lettering.spacing = v.within(0, 10); }},

@@ -106,11 +106,7 @@ void LetteringTool::place(const PlacingSpot& spot) {
                           .brush = l.style_brush ? "" : s.brush.preset,
                           .ink = s.brush.ink,
                           .fit = l.fit,
-                          .name = l.text->group,
-                          .symmetry = s.tools.symmetry,
-                          .layer = s.layers.active,
-                          .mask = s.masks.active,
-                          .wet = s.brush.wet};
+                          .group = group_settings(s, l.text->group)};
         if (const auto* on = std::get_if<LetteringPath>(&command.place))
             writer::places_along(command.text, on->path, on->middle);  // a text that is too long is refused here
         show_message(s.status, Message("Written: {}", place_words(l, command.place, s.brush.preset)));

@@ -72,6 +72,10 @@ std::optional<PlacingSpot> typed_spot(Session& s) {
     return PlacingSpot{on->position, on->normal, -camera_of(s).forward};
 }
 
+GroupSettings group_settings(const Session& s, const std::string& name) {
+    return {name, s.tools.symmetry, s.layers.active, s.masks.active, s.brush.wet};
+}
+
 void show_place(ToolState& tools, const Vec3& at) {
     for (std::size_t k = 0; k < 3; ++k) {
         const double mm = at[static_cast<int>(k)] / kMillimetre;

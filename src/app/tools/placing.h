@@ -6,6 +6,7 @@
 #include "app/document/writing.h"
 #include "app/input/events.h"
 #include "app/session/session.h"
+#include "app/work/commands.h"
 
 /// \file
 /// What tools have in common that place something flat on the model. Window thread.
@@ -22,6 +23,9 @@ std::optional<PlacingSpot> spot_at(const Session& session, const Event* cursor);
 /// Returns the spot nearest to the place that was typed. Shows a message and returns nothing for one that is not finite
 /// or far beside the model.
 std::optional<PlacingSpot> typed_spot(Session& session);
+
+/// Returns how what is placed enters the journal: on the active layer, within the active mask.
+GroupSettings group_settings(const Session& session, const std::string& name);
 
 /// Shows a place in the fields, metres.
 void show_place(ToolState& tools, const Vec3& at);

@@ -67,8 +67,7 @@ void WritingTool::place(const PlacingSpot& spot) {
     const WritingHand hand{s.brush.preset, s.brush.ink, s.tools.pointer.pressure / PointerSettings{}.pressure};
     show_message(s.status, Message("Placed: {}", place_words(s.tools.writing, at)));
     s.paint_thread->post(PaintDrawing{placed_writing(s.tools.writing, at, hand),
-                                      stroke::group_name(s.tools.writing.file), s.tools.symmetry, s.layers.active,
-                                      s.masks.active, s.brush.wet});
+                                      group_settings(s, stroke::group_name(s.tools.writing.file))});
 }
 
 }  // namespace tuft::app

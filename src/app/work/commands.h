@@ -49,14 +49,18 @@ struct ExtendStroke {
     double requested_at = 0;  ///< seconds on the window's clock, returned in `ProgressStatus::done`
 };
 struct EndStroke {};
-/// Paints a drawing placed on the model; one undo step.
-struct PaintDrawing {
-    PlacedWriting drawing;
-    std::string name;           ///< of its group of strokes; each symmetric copy is another group; empty: no groups
-    stroke::Symmetry symmetry;  ///< copies of the drawing read in the same direction, also beyond a mirror plane
+/// How the strokes of a drawing or of a text enter the journal.
+struct GroupSettings {
+    std::string name;           ///< of the group; each symmetric copy is another group; empty: no groups
+    stroke::Symmetry symmetry;  ///< copies read in the same direction, also beyond a mirror plane
     std::uint32_t layer = stroke::kFirstLayer;
     std::uint32_t mask = 0;
     bool wet = false;
+};
+/// Paints a drawing placed on the model; one undo step.
+struct PaintDrawing {
+    PlacedWriting drawing;
+    GroupSettings group;
 };
 /// Writes a text on the model; one undo step.
 struct PaintText {
@@ -64,11 +68,7 @@ struct PaintText {
     LetteringPlace place;
     std::string brush, ink;  ///< presets; an empty brush: the style's
     bool fit = false;        ///< to the outlines of the source
-    std::string name;        ///< of its group; from here on as `PaintDrawing`
-    stroke::Symmetry symmetry;
-    std::uint32_t layer = stroke::kFirstLayer;
-    std::uint32_t mask = 0;
-    bool wet = false;
+    GroupSettings group;
 };
 struct CancelStroke {};
 struct UndoStroke {};

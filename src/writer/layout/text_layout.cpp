@@ -87,11 +87,9 @@ std::vector<Vec3> follow(std::vector<SectionPart>& parts, std::size_t first,
 }  // namespace
 
 std::optional<Direction> direction_named(std::string_view name) {
-    if (name == "horizontal") return Direction::horizontal;
-    if (name == "vertical") return Direction::vertical;
-    if (name == "rim") return Direction::rim;
-    if (name == "curve") return Direction::curve;
-    return std::nullopt;
+    const auto at = std::find(kDirectionNames.begin(), kDirectionNames.end(), name);
+    if (at == kDirectionNames.end()) return std::nullopt;
+    return static_cast<Direction>(at - kDirectionNames.begin());
 }
 
 std::vector<std::u32string> lines_of(std::string_view text) {

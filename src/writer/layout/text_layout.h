@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +19,11 @@ enum class Direction {
     rim,         ///< round the model, level
     curve,       ///< along a line on the model
 };
+/// Words of the command line, in the order of the values.
+inline constexpr std::array<const char*, 4> kDirectionNames{"horizontal", "vertical", "rim", "curve"};
+inline const char* name_of(Direction direction) {
+    return kDirectionNames[static_cast<std::size_t>(direction)];
+}
 std::optional<Direction> direction_named(std::string_view name);
 
 struct LayoutOptions {
