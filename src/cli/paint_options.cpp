@@ -260,6 +260,8 @@ void add_write_options(CLI::App* w, Write& write) {
         ->check(number_in(0.1, 10.0));
     w->add_option("--line-spacing", write.line_spacing, "between lines, in parts of the size (default: the style's)")
         ->check(number_in(0.1, 10.0));
+    w->get_option("--brush")->description(
+        "brush for all strokes ('tuft brush' lists them; default: the style's, in the size that suits the text)");
     for (const char* other : {"--along", "--repeat", "--size"}) w->remove_option(w->get_option(other));
     w->add_option_function<std::string>(
          "--size",
