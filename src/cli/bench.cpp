@@ -166,6 +166,7 @@ nlohmann::json measure_model(const MeasuredModel& c, footprint::Isa isa, double 
         m["flat_stamps_per_second"][std::to_string(texels)] = stamps_per_second(c.model, texels, 0, "flat-12");
     }
     const FilmFigures film = measure_film(c.model);
+    m["ns_per_texel"]["film_flow"] = film.flow_ns;
     m["ns_per_texel"]["film_step"] = film.step_ns;
     m["ns_per_texel"]["transfer"] = film.transfer_ns;
     if (film.steps_per_second > 0) m["film_steps_per_second"] = film.steps_per_second;
@@ -186,8 +187,11 @@ void print_model(const std::string& name, const nlohmann::json& m) {
         "  first ink {:.1f} ms after the first touch; {:.1f} ns a texel with one ink, {:.1f} with three pigments\n",
         m["first_ink_ms"].get<double>(), m["ns_per_texel"]["one_ink"].get<double>(),
         m["ns_per_texel"]["pigments"].get<double>());
-    fmt::print("  wet ink with four pigments: {:.1f} ns a texel and step, {:.1f} both ways under the brush",
-               m["ns_per_texel"]["film_step"].get<double>(), m["ns_per_texel"]["transfer"].get<double>());
+    fmt::print(
+        "  wet ink with four pigments: {:.1f} ns a texel and step, {:.1f} with levelling and soaking, {:.1f} both ways "
+        "under the brush",
+        m["ns_per_texel"]["film_flow"].get<double>(), m["ns_per_texel"]["film_step"].get<double>(),
+        m["ns_per_texel"]["transfer"].get<double>());
     if (m.contains("film_steps_per_second"))
         fmt::print("; all of it wet {:.1f} steps/s on two threads", m["film_steps_per_second"].get<double>());
     fmt::print("\n");

@@ -54,8 +54,9 @@ double wet_texels(const ink::Canvas& canvas) {
 
 /// A film that stays wet, advanced as painting does it.
 struct FilmRun {
-    FilmRun(const stroke::Model& model, ink::WetFilm& on, std::size_t tiles)
+    FilmRun(const stroke::Model& model, ink::WetFilm& on, std::size_t tiles, bool whole = true)
         : film(on), canvas(wet_canvas(model, tiles)), params(ink::film_params(ink::load_substrate("bisque"))) {
+        if (!whole) params.levels_ripples = false, params.pores = 0;
         const double area = model.texels.texel_size * model.texels.texel_size;
         dt = 0.005 * area / (params.mobility * 3);
         film.advance(canvas, dt, params);
@@ -81,8 +82,9 @@ struct StepTime {
 };
 
 /// Medians of nine runs.
-StepTime step_time(const stroke::Model& model, ink::WetFilm& film, std::size_t tiles, clockid_t clock) {
-    FilmRun run(model, film, tiles);
+StepTime step_time(const stroke::Model& model, ink::WetFilm& film, std::size_t tiles, clockid_t clock,
+                   bool whole = true) {
+    FilmRun run(model, film, tiles, whole);
     std::vector<double> runs, per_texel;
     for (int i = 0; i < 9; ++i) {
         runs.push_back(run.step_seconds(clock));
@@ -141,6 +143,7 @@ FilmFigures measure_film(const stroke::Model& model) {
     ink::WetFilm film(model.texels, atlas::build_seam_links(*model.mesh, model.atlas, model.texels));
     const int threads = thread_count();
     set_thread_count(1);
+    out.flow_ns = 1e9 * step_time(model, film, tiles, CLOCK_THREAD_CPUTIME_ID, false).per_texel;
     out.step_ns = 1e9 * step_time(model, film, tiles, CLOCK_THREAD_CPUTIME_ID).per_texel;
     out.transfer_ns = 1e9 * transfer_seconds(model, std::min<std::size_t>(tiles, 1024));
     if (model.atlas.size <= 2048) {

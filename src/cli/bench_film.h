@@ -10,7 +10,9 @@ namespace tuft::cli {
 
 /// Measured times.
 struct FilmFigures {
-    double step_ns = 0;           ///< per wet texel and step, four pigments, one thread, CPU time
+    double flow_ns =
+        0;  ///< per wet texel and step, four pigments, one thread, CPU time; no ripples level, nothing soaks
+    double step_ns = 0;           ///< the same with levelling and soaking into bisque
     double transfer_ns = 0;       ///< per covered texel and stamp, ink both ways, four pigments
     double steps_per_second = 0;  ///< of a whole wet atlas, two threads, wall time; 0: not measured (beyond 2048²)
 };
