@@ -282,9 +282,8 @@ CLI::App* add_brush(CLI::App& app, Brush& brush) {
         "--picture", brush.picture,
         "draw the tuft at five depths and three tilts, lifted, slanted, reversed, split and dry (.png)");
     command->add_option("--sweep-depth", brush.sweep_depth, "write line width over depth (.csv)");
-    command->add_option(
-        "--compare", brush.compare,
-        "print what each way to bend the tuft draws beside a measured table (.csv); --picture draws that");
+    command->add_option("--compare", brush.compare,
+                        "print what each spine method draws beside a measured table (.csv); --picture draws that");
     auto* fit = command->add_subcommand("calibrate",
                                         "fit a brush to a table of depth against line width, contact length or offset");
     fit->add_option("MEASURED", brush.calibrate, "measured table (.csv): z_mm and any of width_mm, drag_mm, offset_mm")

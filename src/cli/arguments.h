@@ -78,7 +78,7 @@ struct Paint {
     std::string spine = "rod";           ///< rod | table
     std::string footprint = "surface";   ///< surface | plane
     std::string contact = "exact";       ///< exact | vertices
-    std::string dip = "each";            ///< each | carry | endless
+    std::string dip = "each";            ///< each | persistent | endless
     std::string film = "still";          ///< still | wet
     std::vector<double> down{0, 0, -1};  ///< [3] direction of gravity on wet ink, model frame
     double dry = -1;                     ///< seconds of drying after each stroke file; 0: until dry; < 0: none

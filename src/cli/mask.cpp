@@ -45,8 +45,8 @@ stroke::Mask mask_of(const MaskWork& a, const stroke::MaskTable& table, const io
     stroke::Mask mask;
     mask.name = a.name;
     int kinds = 0;
-    const auto is = [&](bool asked, stroke::MaskKind kind) {
-        if (asked) mask.kind = kind, ++kinds;
+    const auto is = [&](bool given, stroke::MaskKind kind) {
+        if (given) mask.kind = kind, ++kinds;
     };
     is(!a.groups.empty(), stroke::MaskKind::group);
     is(!a.direction.empty(), stroke::MaskKind::angle);

@@ -29,10 +29,10 @@ struct Band {
 };
 
 Band band_of(double length, double width, const Paint& a) {
-    const double asked = a.place_width_mm > 0 ? a.place_width_mm * kMillimetre : width;
-    Band band{.repeats = repeats_of(a.repeat), .scale = asked / width};
+    const double wanted = a.place_width_mm > 0 ? a.place_width_mm * kMillimetre : width;
+    Band band{.repeats = repeats_of(a.repeat), .scale = wanted / width};
     const bool fit = band.repeats == 0;
-    if (fit) band.repeats = static_cast<int>(std::clamp(std::round(length / asked), 1.0, double(kMostRepeats)));
+    if (fit) band.repeats = static_cast<int>(std::clamp(std::round(length / wanted), 1.0, double(kMostRepeats)));
     band.step = length / band.repeats;
     if (fit || a.place_width_mm <= 0) band.scale = band.step / width;
     band.width = band.scale * width;

@@ -72,9 +72,9 @@ void PictureOverlay::fill(const Vec2& low, const Vec2& high, const Vec3& colour)
 
 /// Position in the picture of a point that nothing hides.
 std::optional<Vec2> PictureOverlay::seen(const Vec3& p, const Vec3& normal) const {
-    const Vec3 lifted = p + kLift * normal, way = camera_.eye - lifted;
-    const double distance = glm::length(way);
-    if (glm::dot(way, normal) <= 0 || query_.occluded(lifted, way / distance, 0, distance)) return std::nullopt;
+    const Vec3 lifted = p + kLift * normal, to_eye = camera_.eye - lifted;
+    const double distance = glm::length(to_eye);
+    if (glm::dot(to_eye, normal) <= 0 || query_.occluded(lifted, to_eye / distance, 0, distance)) return std::nullopt;
     const std::optional<Vec3> at = render::project(camera_, p);
     if (!at) return std::nullopt;
     return Vec2(at->x, at->y);

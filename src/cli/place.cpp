@@ -24,11 +24,11 @@ constexpr double kLies = 0.8;
 
 void note_widths(const stroke::WidthMismatch& m, bool fitted, Console& console) {
     if (m.brush.empty()) return;
-    const std::string asked = m.most > m.least
-                                  ? fmt::format("{:.3g} to {:.3g}", m.least / kMillimetre, m.most / kMillimetre)
-                                  : fmt::format("{:.3g}", m.most / kMillimetre);
+    const std::string wanted = m.most > m.least
+                                   ? fmt::format("{:.3g} to {:.3g}", m.least / kMillimetre, m.most / kMillimetre)
+                                   : fmt::format("{:.3g}", m.most / kMillimetre);
     console.note(fmt::format(
-        "the drawing has lines {} mm wide that {} does not draw: its lines are {:.2g} to {:.2g} mm wide ({})", asked,
+        "the drawing has lines {} mm wide that {} does not draw: its lines are {:.2g} to {:.2g} mm wide ({})", wanted,
         m.brush, m.thinnest / kMillimetre, m.widest / kMillimetre,
         fitted ? "no size of it fits; another --brush may" : "--fit-brush takes a size of it that fits"));
 }

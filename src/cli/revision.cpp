@@ -60,8 +60,8 @@ void tint(render::Image& image, const render::Camera& camera, const mesh::Surfac
     parallel_for(static_cast<std::size_t>(image.height), 8, [&](std::size_t begin, std::size_t end) {
         for (std::size_t y = begin; y < end; ++y)
             for (int x = 0; x < image.width; ++x) {
-                const Vec3 way = render::ray_direction(camera, x + 0.5, static_cast<double>(y) + 0.5);
-                const auto hit = revised.ray(camera.eye, way);
+                const Vec3 direction = render::ray_direction(camera, x + 0.5, static_cast<double>(y) + 0.5);
+                const auto hit = revised.ray(camera.eye, direction);
                 if (!hit) continue;
                 const double distance = deviation.at(revised.mesh(), hit->triangle, hit->position);
                 if (distance < kLeastSeen) continue;

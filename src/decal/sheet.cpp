@@ -23,7 +23,7 @@ constexpr double kLeastSide = 0.010;   // metres
 constexpr double kStrainPixel = 5e-4;  // metres, of strain maps
 
 /// Panels with what is printed round them.
-struct Laid {
+struct CutFilm {
     FilmMesh film;
     std::vector<Panel> panels;
     std::map<std::uint32_t, std::size_t> index;  // of a panel, by its label
@@ -36,8 +36,8 @@ double printed_bleed(const SheetOptions& options) {
 }
 
 /// How far film i reaches beyond its seam with another panel: the one with the lower number lies below.
-double overlap_of(const Laid& laid, std::size_t i, std::uint32_t label, const SheetOptions& options) {
-    return laid.index.at(label) > i ? options.overlap : 0;
+double overlap_of(const CutFilm& cut, std::size_t i, std::uint32_t label, const SheetOptions& options) {
+    return cut.index.at(label) > i ? options.overlap : 0;
 }
 
 /// Up the model on a panel's sheet, unit; on level panels to its back.
@@ -72,42 +72,42 @@ bool fits_page(const atlas::ChartMesh& chart, const std::vector<Vec2>& flat, con
     return box.length + around < longest && box.width + around < shortest;
 }
 
-Laid lay_out(const mesh::TriangleMesh& model, const PrintSource& source, const SheetOptions& options) {
-    Laid laid;
+CutFilm cut_film(const mesh::TriangleMesh& model, const PrintSource& source, const SheetOptions& options) {
+    CutFilm cut;
     const double margin = std::min(std::max(options.bleed, 0.5 * options.join), 0.5 * options.join + kPrintedBleed);
-    laid.film = select_film(model, source.coverage, 1.2 * margin, source.texel);
-    if (laid.film.source.empty()) throw Error("nothing is painted: there is no film to cut");
+    cut.film = select_film(model, source.coverage, 1.2 * margin, source.texel);
+    if (cut.film.source.empty()) throw Error("nothing is painted: there is no film to cut");
     PanelOptions panel_options{.max_strain = options.max_strain, .fits = {}, .progress = options.progress};
     panel_options.fits = [&](const atlas::ChartMesh& chart, const std::vector<Vec2>& flat) {
         return fits_page(chart, flat, options);
     };
-    laid.panels = cut_into_panels(laid.film, source.coverage, panel_options);
-    for (std::size_t i = 0; i < laid.panels.size(); ++i) laid.index[laid.label(i)] = i;
-    return laid;
+    cut.panels = cut_into_panels(cut.film, source.coverage, panel_options);
+    for (std::size_t i = 0; i < cut.panels.size(); ++i) cut.index[cut.label(i)] = i;
+    return cut;
 }
 
-std::vector<Piece> find_pieces(const Laid& laid, const PrintSource& source, const SheetOptions& options,
+std::vector<Piece> find_pieces(const CutFilm& cut, const PrintSource& source, const SheetOptions& options,
                                std::vector<PrintSurface>& surfaces) {
     std::vector<Piece> pieces;
-    for (std::size_t i = 0; i < laid.panels.size(); ++i) {
-        report(options.progress, "cut lines", static_cast<double>(i) / static_cast<double>(laid.panels.size()));
-        surfaces.push_back(extend(laid.film, laid.panels[i], [&](std::uint32_t label) {
-            return overlap_of(laid, i, label, options) + printed_bleed(options);
+    for (std::size_t i = 0; i < cut.panels.size(); ++i) {
+        report(options.progress, "cut lines", static_cast<double>(i) / static_cast<double>(cut.panels.size()));
+        surfaces.push_back(extend(cut.film, cut.panels[i], [&](std::uint32_t label) {
+            return overlap_of(cut, i, label, options) + printed_bleed(options);
         }));
         const OutlineOptions outline{
             .bleed = options.bleed,
             .join = options.join,
             .least_side = kLeastSide,
             .texel = source.texel,
-            .overlap = [&](std::uint32_t label) { return overlap_of(laid, i, label, options); }};
-        const Vec2 up = up_of(laid.panels[i].chart, laid.panels[i].flat);
-        for (Outline& o : find_outlines(laid.film, laid.panels[i], surfaces[i], source.coverage, outline)) {
+            .overlap = [&](std::uint32_t label) { return overlap_of(cut, i, label, options); }};
+        const Vec2 up = up_of(cut.panels[i].chart, cut.panels[i].flat);
+        for (Outline& o : find_outlines(cut.film, cut.panels[i], surfaces[i], source.coverage, outline)) {
             Piece piece;
             piece.number = static_cast<int>(pieces.size()) + 1;
             piece.surface = i;
             piece.film = std::move(o.film);
             piece.paint_area = o.paint_area;
-            piece.strain = laid.panels[i].strain;
+            piece.strain = cut.panels[i].strain;
             piece.up = up;
             pieces.push_back(std::move(piece));
         }
@@ -188,14 +188,14 @@ std::vector<Vec2> place_pieces(std::vector<Piece>& pieces, const SheetOptions& o
     return labels;
 }
 
-/// The line on a panel's film up to which the next one is laid.
-void add_lap_lines(const Laid& laid, const Piece& piece, const SheetOptions& options, Page& page) {
-    const Panel& panel = laid.panels[piece.surface];
-    const std::vector<std::uint32_t> twin = atlas::twin_half_edges(laid.film.mesh);
+/// The line on a panel's film up to which the next one reaches.
+void add_lap_lines(const CutFilm& cut, const Piece& piece, const SheetOptions& options, Page& page) {
+    const Panel& panel = cut.panels[piece.surface];
+    const std::vector<std::uint32_t> twin = atlas::twin_half_edges(cut.film.mesh);
     for (std::uint32_t h = 0; h < panel.is_seam.size(); ++h) {
         if (!panel.is_seam[h]) continue;
-        const std::uint32_t label = laid.film.label[twin[3 * panel.chart.triangles[h / 3] + h % 3] / 3];
-        if (laid.index.at(label) <= piece.surface || options.overlap <= 0) continue;
+        const std::uint32_t label = cut.film.label[twin[3 * panel.chart.triangles[h / 3] + h % 3] / 3];
+        if (cut.index.at(label) <= piece.surface || options.overlap <= 0) continue;
         const Vec2 a = panel.flat[panel.chart.faces[h / 3][h % 3]];
         const Vec2 b = panel.flat[panel.chart.faces[h / 3][(h % 3 + 1) % 3]];
         if (contains(piece.film, a) && contains(piece.film, b))
@@ -210,7 +210,7 @@ Region placed(const Region& region, const PagePlacement& placement) {
     return out;
 }
 
-void draw_pieces(const Laid& laid, const PrintSource& source, const SheetOptions& options,
+void draw_pieces(const CutFilm& cut, const PrintSource& source, const SheetOptions& options,
                  const std::vector<Vec2>& labels, Sheet& sheet) {
     const std::size_t n = sheet.pages.size();
     if (options.strain_map)
@@ -227,7 +227,7 @@ void draw_pieces(const Laid& laid, const PrintSource& source, const SheetOptions
             page.prints.push_back(
                 print_piece(surface, source, piece.placement, piece.film, printed_bleed(options), options.pixel));
         for (const Ring& ring : placed(piece.film, piece.placement)) page.lines.push_back({ring, true, Role::cut});
-        add_lap_lines(laid, piece, options, page);
+        add_lap_lines(cut, piece, options, page);
         const Vec2 up{piece.placement.c * piece.up.x - piece.placement.s * piece.up.y,
                       piece.placement.s * piece.up.x + piece.placement.c * piece.up.y};
         add_label(page, piece.number, labels[i], up);
@@ -244,13 +244,13 @@ void draw_pieces(const Laid& laid, const PrintSource& source, const SheetOptions
 }  // namespace
 
 Sheet make_sheet(const mesh::TriangleMesh& model, const PrintSource& source, const SheetOptions& options) {
-    const Laid laid = lay_out(model, source, options);
+    const CutFilm cut = cut_film(model, source, options);
     Sheet sheet;
     sheet.max_strain = options.max_strain;
-    sheet.pieces = find_pieces(laid, source, options, sheet.surfaces);
+    sheet.pieces = find_pieces(cut, source, options, sheet.surfaces);
     if (sheet.pieces.empty()) throw Error("nothing is painted: there is no film to cut");
     const std::vector<Vec2> labels = place_pieces(sheet.pieces, options, sheet.pages);
-    draw_pieces(laid, source, options, labels, sheet);
+    draw_pieces(cut, source, options, labels, sheet);
     return sheet;
 }
 

@@ -213,7 +213,7 @@ void add_samples(std::vector<Task>& tasks, Task task, const Plan& plan) {
 }
 
 /// Files with one stem, such as vase.stl and old/vase.ply, get their number in the plan.
-void tell_apart(std::vector<Task>& tasks) {
+void make_distinct(std::vector<Task>& tasks) {
     std::set<std::string> seen;
     for (std::size_t i = 0; i < tasks.size(); ++i)
         if (!seen.insert(tasks[i].name).second) tasks[i].name += fmt::format(" ({})", i);
@@ -280,7 +280,7 @@ std::vector<Task> tasks_of(const Plan& plan) {
                     task.contents = contents_of(task, plan.folder, known);
                     add_samples(tasks, task, plan);
                 }
-    tell_apart(tasks);
+    make_distinct(tasks);
     return tasks;
 }
 

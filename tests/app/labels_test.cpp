@@ -23,7 +23,7 @@ float characters(const std::string& text) {
 }
 
 void expect_told_apart(const std::vector<std::string>& names, const LabelRoom& room) {
-    const std::vector<std::string> labels = tell_apart(names, room);
+    const std::vector<std::string> labels = make_distinct(names, room);
     ASSERT_EQ(labels.size(), names.size());
     std::set<std::string> different(labels.begin(), labels.end());
     EXPECT_EQ(different.size(), std::set<std::string>(names.begin(), names.end()).size());
@@ -55,9 +55,9 @@ TEST(Labels, OfDifferentNamesAreDifferentAndFit) {
 }
 
 TEST(Labels, ANameThatFitsStaysAsItIs) {
-    EXPECT_EQ(tell_apart({"Iron red", "Iron"}, {1, 8, characters}), (std::vector<std::string>{"Iron red", "Iron"}));
-    EXPECT_EQ(tell_apart({"Iron red"}, {2, 5, characters}), (std::vector<std::string>{"Iron\nred"}));
-    EXPECT_EQ(tell_apart({"Iron", "Iron"}, {1, 8, characters}), (std::vector<std::string>{"Iron", "Iron"}));
+    EXPECT_EQ(make_distinct({"Iron red", "Iron"}, {1, 8, characters}), (std::vector<std::string>{"Iron red", "Iron"}));
+    EXPECT_EQ(make_distinct({"Iron red"}, {2, 5, characters}), (std::vector<std::string>{"Iron\nred"}));
+    EXPECT_EQ(make_distinct({"Iron", "Iron"}, {1, 8, characters}), (std::vector<std::string>{"Iron", "Iron"}));
 }
 
 // At the sizes that the panel has: four columns and three gaps of 2 in 202 pixels, letters of 0.7 of the font.

@@ -59,8 +59,8 @@ Pictures::~Pictures() {
 unsigned Pictures::texture(const fs::path& file) {
     const std::lock_guard lock(mutex_);
     Picture& p = pictures_[file.string()];
-    if (!p.asked && !stop_) {
-        p.asked = true;
+    if (!p.requested && !stop_) {
+        p.requested = true;
         jobs_.push_back({.file = file.string()});
         wake_.notify_all();
     }
@@ -78,7 +78,7 @@ unsigned Pictures::texture(const fs::path& file) {
 
 void Pictures::keep(const fs::path& file, int width, int height, std::vector<std::uint8_t> rgb) {
     const std::lock_guard lock(mutex_);
-    pictures_[file.string()].asked = true;
+    pictures_[file.string()].requested = true;
     jobs_.push_front({file.string(), width, height, std::move(rgb)});
     wake_.notify_all();
 }
@@ -87,7 +87,7 @@ void Pictures::pause() {
     const std::lock_guard lock(mutex_);
     stop_ = true;
     for (const Job& job : jobs_)
-        if (job.rgb.empty()) pictures_[job.file].asked = false;
+        if (job.rgb.empty()) pictures_[job.file].requested = false;
     std::erase_if(jobs_, [](const Job& job) { return job.rgb.empty(); });
 }
 
@@ -178,7 +178,7 @@ void Pictures::run() {
         }
         const std::lock_guard lock(mutex_);
         Picture& p = pictures_[job.file];
-        if (again) p.asked = false;
+        if (again) p.requested = false;
         if (rgb.empty()) continue;
         p.rgb = std::move(rgb);
         p.fresh = true;

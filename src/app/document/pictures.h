@@ -41,7 +41,7 @@ class Pictures {
     struct Picture {
         std::vector<std::uint8_t> rgb;
         unsigned texture = 0;
-        bool asked = false, fresh = false;
+        bool requested = false, fresh = false;
     };
     struct Job {
         std::string file;

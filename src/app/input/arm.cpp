@@ -176,7 +176,7 @@ void Arm::drop_stroke() {
     dropped_ = true;
 }
 
-void Arm::carry(const Vec3& about, const Quat& axes, bool moves) {
+void Arm::set_workspace(const Vec3& about, const Quat& axes, bool moves) {
     if (!moves) {
         held_known_ = carried_ = false;
         workspace_.rotation = axes;

@@ -67,11 +67,11 @@ class Arm {
 
     /// Settings that act while the loop runs: gain, limits, restore, scale.
     void apply(const ArmSettings& settings);
-    /// `control.workspace` is set by `carry`, which comes first.
+    /// `control.workspace` is set by `set_workspace`, which comes first.
     void set_control(haptic::ServoControl control);
     /// The arm's axes, and the point round which they turn: where the view has them in this frame. `moves`: the brush
     /// goes with it.
-    void carry(const Vec3& about, const Quat& axes, bool moves);
+    void set_workspace(const Vec3& about, const Quat& axes, bool moves);
     /// Ends an emergency.
     void release();
     void set_ink(double wetness, double ink_left);

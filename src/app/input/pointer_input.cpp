@@ -55,14 +55,14 @@ Vec3 facing(const mesh::SurfacePoint& p, const Aim& aim) {
     return glm::dot(p.normal, aim.ray.direction) < 0 ? p.normal : -p.normal;
 }
 
-/// A way in the plane of the levelled ground. `start`, 0–1: as it is seen, else along the normal. A stroke that begins
-/// on a lip goes far along the ground's normal before it is on the wall, and its direction is that of the wall; one
-/// that ends on a lip has the direction that it came with.
-Vec3 along_ground(const Vec3& way, const Vec3& normal, const Aim& aim, double start) {
+/// `path` projected onto the plane of the levelled surface: by the part `start` (0–1) along the line of sight, else
+/// along the normal. A stroke that begins on a lip goes far along the surface's normal before it is on the wall. Its
+/// direction is that of the wall. A stroke that ends on a lip retains its direction.
+Vec3 along_surface(const Vec3& path, const Vec3& normal, const Aim& aim, double start) {
     const double facing = -glm::dot(aim.ray.direction, normal);
     const Vec3 onto = glm::mix(-normal, aim.ray.direction / std::max(facing, kSlanting),
                                start * smooth_step((facing - kSlanting) / kSlanting));
-    return way + glm::dot(way, normal) * onto;
+    return path + glm::dot(path, normal) * onto;
 }
 
 }  // namespace
@@ -255,7 +255,7 @@ Vec3 PointerInput::ahead_of(const Aim& aim, const Vec3& normal, double pressure)
 
 // The point has moved: what it drags follows on the string, along the surface.
 void PointerInput::drag(const Aim& aim) {
-    Vec3 offset = along_ground(point_ - dragged_.position, normal_, aim, at_start());
+    Vec3 offset = along_surface(point_ - dragged_.position, normal_, aim, at_start());
     if (const double length = glm::length(offset); length > holder_.tip_lag_turn)
         offset *= holder_.tip_lag_turn / length;
     dragged_.position = point_ - offset;
@@ -324,7 +324,7 @@ void PointerInput::set_down(std::vector<StrokeStep>& steps) {
     const Waiting& first = waiting.front();
     const Waiting& last = waiting.back();
     const Vec3 motion =
-        along_ground(last.surface.position - first.surface.position, first.surface.normal, first.aim, 1);
+        along_surface(last.surface.position - first.surface.position, first.surface.normal, first.aim, 1);
     const double length = glm::length(motion);
     const Vec3 towards = length >= 0.5 * kKnown * last.aim.metres_per_pixel ? motion / length : Vec3(0);
     gone_ = 0;

@@ -117,7 +117,7 @@ Savings swatches(const InkParts& s, ToolRoom room) {
         return ImGui::GetFont()->CalcTextSizeA(size.letters, 1e9f, 0, text.c_str()).x;
     };
     const std::vector<std::string> labels =
-        tell_apart(titles, {std::max<std::size_t>(1, size.lines), size.width, width_of});
+        make_distinct(titles, {std::max<std::size_t>(1, size.lines), size.width, width_of});
     const float gap = s.ui.px(2);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(gap, s.ui.px(2)));
     for (std::size_t i = 0; i < all.size(); ++i) {

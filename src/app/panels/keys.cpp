@@ -32,14 +32,14 @@ void key_rows(Ui& ui, const KeyTable& keys, std::optional<Action>& to_assign) {
         ImGui::AlignTextToFramePadding();
         ImGui::TextUnformatted(ui.tr(title_of(action)));
         ImGui::SameLine(ui.px(300));
-        const bool asked = to_assign == action;
-        const std::string name = asked                                 ? ui.tr("press a key...")
+        const bool assigning = to_assign == action;
+        const std::string name = assigning                             ? ui.tr("press a key...")
                                  : name_of(keys.chord(action)).empty() ? "\xe2\x80\x93"
                                                                        : name_of(keys.chord(action));
-        if (asked) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_Header));
+        if (assigning) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_Header));
         if (ImGui::Button((name + "##chord").c_str(), ImVec2(ui.px(150), 0)))
-            to_assign = asked ? std::nullopt : std::optional(action);
-        if (asked) ImGui::PopStyleColor();
+            to_assign = assigning ? std::nullopt : std::optional(action);
+        if (assigning) ImGui::PopStyleColor();
         ui.mark(std::string("key ") + word_of(action));
         ImGui::PopID();
     }

@@ -86,7 +86,7 @@ void ArmInput::control(double now) {
     // First the force goes, then the space changes.
     if (now >= a.regrips_until - 0.5 * kRegrip) {
         a.arm->apply(a.settings);
-        a.arm->carry(s.view.orbit.target, axes(), a.settings.with_view && !a.on_palette);
+        a.arm->set_workspace(s.view.orbit.target, axes(), a.settings.with_view && !a.on_palette);
     }
     a.arm->set_control({.paused = a.paused || !a.focused || is_dialog_open(s),
                         .emergency = a.emergency,

@@ -65,7 +65,7 @@ std::string label(const std::string& name, const LabelRoom& room, const Shorten&
 
 }  // namespace
 
-std::vector<std::string> tell_apart(const std::vector<std::string>& names, const LabelRoom& room) {
+std::vector<std::string> make_distinct(const std::vector<std::string>& names, const LabelRoom& room) {
     std::vector<std::string> labels;
     std::map<std::string, std::set<std::string>> names_of;
     for (const std::string& name : names) {

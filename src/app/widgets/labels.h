@@ -18,7 +18,7 @@ struct LabelRoom {
 /// Shortens names to labels of at most so many lines, broken at spaces. A line that is too wide ends with "...".
 /// Labels that would be the same keep the ends of their names instead of the beginnings, or get a number: labels of
 /// different names are different. UTF-8.
-std::vector<std::string> tell_apart(const std::vector<std::string>& names, const LabelRoom& room);
+std::vector<std::string> make_distinct(const std::vector<std::string>& names, const LabelRoom& room);
 
 /// Joins texts to lines of at most that width: a text begins a new line where it does not fit, and is never broken.
 /// Spaces at the end of a line count for nothing.

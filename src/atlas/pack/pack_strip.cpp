@@ -44,10 +44,10 @@ void Strip::place(const Mask& mask, const Spot& spot) {
 void Strip::grow(std::uint32_t rows) {
     if (rows <= n_rows_) return;
     if (rows > built_.size()) {
-        const std::size_t room = std::max<std::size_t>({rows, 3 * built_.size() / 2, width_});
-        rows_.resize(room * static_cast<std::size_t>(levels_) * stride_ + kRoundedUp);
-        built_.resize(room);
-        gap_.resize(room);
+        const std::size_t capacity = std::max<std::size_t>({rows, 3 * built_.size() / 2, width_});
+        rows_.resize(capacity * static_cast<std::size_t>(levels_) * stride_ + kRoundedUp);
+        built_.resize(capacity);
+        gap_.resize(capacity);
     }
     for (; n_rows_ < rows; ++n_rows_) {
         std::copy(beyond_.begin(), beyond_.end(), level(n_rows_, 0));

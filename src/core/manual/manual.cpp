@@ -85,18 +85,18 @@ std::string heading(const Manual& manual, const std::string& name, const std::st
 std::string body(const std::string& text) {
     std::string out;
     std::istringstream lines(text);
-    bool verbatim = false, parted = false;
+    bool verbatim = false, paragraph_ended = false;
     for (std::string line; std::getline(lines, line);) {
         if (line.empty()) {
-            parted = true;
+            paragraph_ended = true;
             continue;
         }
         const bool indented = line.starts_with("  ");
         if (verbatim && !indented) out += ".RE\n.fi\n";
-        if (parted || indented != verbatim) out += ".PP\n";
+        if (paragraph_ended || indented != verbatim) out += ".PP\n";
         if (indented && !verbatim) out += ".nf\n.RS\n";
         verbatim = indented;
-        parted = false;
+        paragraph_ended = false;
         out += roff(indented ? line.substr(2) : line) + "\n";
     }
     return out + (verbatim ? ".RE\n.fi\n" : "");

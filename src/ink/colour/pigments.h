@@ -101,7 +101,7 @@ struct Substrate {
     float absorbency = 0.2f;       ///< rate of absorption of the water on it, 1/s
     float pores = 2;               ///< capacity of its pores, film units of water
     /// r, metres: radius of tubes that draw as its pores do, by their rate of rise (Washburn 1921); less than their
-    /// width, since ways through pores wind and end. 0: `diffusion` holds in the pores too.
+    /// width, since paths through pores wind and end. 0: `diffusion` holds in the pores too.
     float pore_radius = 0;
     float contact_angle = 0;        ///< θ of water on its pores, degrees, below 90
     float retention = 0;            ///< 0–1: fraction of the pigments that its pores retain from seeping liquid

@@ -47,7 +47,7 @@ struct EraseParams {
 Amounts erase(Canvas& canvas, const StampedTile& tile, const EraseStart& start, const EraseParams& params);
 
 /// Takes `part` [256] (0–1) of all films, dry, open and soaked, and of the liquid off each texel of a tile: a painter
-/// cleans the ground within a mask. Less than 1e-6 film units is taken whole. Returns the removed amounts.
+/// cleans the surface within a mask. Less than 1e-6 film units is taken whole. Returns the removed amounts.
 Amounts take_part(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> area,
                   std::span<const float, atlas::kTileTexels> part);
 

@@ -105,7 +105,7 @@ std::vector<brush::Pose> spatial_poses(const StrokeSamples& trace) {
 
 namespace {
 
-constexpr double kWayLength = 3e-3;  // metres to both sides of a sample over which its path's direction is taken
+constexpr double kPathReach = 3e-3;  // metres to both sides of a sample over which its path's direction is taken
 constexpr double kMostTurn = 0.5;    // radians by which a mapping turns a path against its axes; beyond, it is torn
 
 /// Turns the rolls of a trace so that the ferrule lies to its path on the surface as it did to the flat one: a mapping
@@ -116,13 +116,13 @@ void keep_rolls_to_path(std::span<const StrokeSample> flat, std::span<SurfaceSam
     const std::vector<double> along = travelled(flat);
     std::size_t a = 0, b = 0;
     for (std::size_t i = 0; i < flat.size(); ++i) {
-        while (along[i] - along[a] > kWayLength) ++a;
-        while (b + 1 < flat.size() && along[b] - along[i] < kWayLength) ++b;
+        while (along[i] - along[a] > kPathReach) ++a;
+        while (b + 1 < flat.size() && along[b] - along[i] < kPathReach) ++b;
         const Vec2 drawn(flat[b].position - flat[a].position);
-        const Vec3 way = mapped[b].position - mapped[a].position;
-        const Vec2 laid{glm::dot(way, mapped[i].right), glm::dot(way, mapped[i].down)};
-        if (!(glm::length(drawn) > 0.1 * kWayLength) || !(glm::length(laid) > 0.1 * kWayLength)) continue;
-        const double turn = std::atan2(drawn.x * laid.y - drawn.y * laid.x, glm::dot(drawn, laid));
+        const Vec3 path = mapped[b].position - mapped[a].position;
+        const Vec2 on_surface{glm::dot(path, mapped[i].right), glm::dot(path, mapped[i].down)};
+        if (!(glm::length(drawn) > 0.1 * kPathReach) || !(glm::length(on_surface) > 0.1 * kPathReach)) continue;
+        const double turn = std::atan2(drawn.x * on_surface.y - drawn.y * on_surface.x, glm::dot(drawn, on_surface));
         mapped[i].roll -= std::clamp(turn, -kMostTurn, kMostTurn);
     }
 }
@@ -132,8 +132,8 @@ using OtherSheets = std::vector<std::optional<Vec3>>;
 
 /// Keeps the hand from leading the ink over an edge with another sheet within `reach` (metres) behind it: the tuft
 /// would hang into the gap and touch that. At the edge the tip is over it.
-void shorten_leads(const std::vector<bool>& left, const OtherSheets& others, double reach,
-                   std::span<SurfaceSample> mapped) {
+void shorten_tip_lag(const std::vector<bool>& left, const OtherSheets& others, double reach,
+                     std::span<SurfaceSample> mapped) {
     const double never = std::numeric_limits<double>::infinity();
     double edge = never, other = never;  // metres of path to the edge ahead, and from there to what is behind it
     for (std::size_t i = left.size(); i-- > 0;) {
@@ -205,7 +205,7 @@ HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& trace, 
     const Vec3 outward = glm::normalize(glm::cross(trace.placement.down, trace.placement.right));
     for (std::size_t i = 0; i < left.size(); ++i)
         if (left[i]) path.mapped.samples[i].position += options.hover * outward;
-    shorten_leads(left, others, options.tuft_length, path.mapped.samples);
+    shorten_tip_lag(left, others, options.tuft_length, path.mapped.samples);
     lift_off_sheet(left, path.mapped.samples);
     path.poses = pose_holder(query, path.mapped.samples, options, left);
     return path;
