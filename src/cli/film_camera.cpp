@@ -1,7 +1,6 @@
 #include "cli/film_camera.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <array>
@@ -11,8 +10,7 @@
 #include "cli/steps.h"
 #include "core/error.h"
 #include "core/system/files.h"
-#include "core/system/library_fault.h"
-#include "core/text/nesting.h"
+#include "core/system/toml_text.h"
 #include "core/text/text.h"
 
 namespace tuft::cli {
@@ -95,13 +93,7 @@ class KeyReader {
 render::CameraPath read_path(const std::string& file, const View& otherwise, const stroke::Model& model) {
     const std::vector<char> bytes = read_file(file, kMostBytes);
     const std::string_view text(bytes.data(), bytes.size());
-    check_toml_nesting(text, file);
-    toml::table root;
-    try {
-        root = toml::parse(text);
-    } catch (const toml::parse_error& e) {
-        throw Error(file, static_cast<long>(e.source().begin.line), toml_fault(e.description()));
-    }
+    const toml::table root = parse_toml(text, file);
     const toml::array* keys = root["key"].as_array();
     if (root.size() != 1 || !keys || keys->empty() || !keys->is_homogeneous(toml::node_type::table))
         throw Error(file, "must have [[key]] tables and nothing else");

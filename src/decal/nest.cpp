@@ -13,19 +13,6 @@ constexpr double kLeastCell = 5e-4;           // metres
 constexpr double kMostAcross = 2000;          // cells
 constexpr std::uint32_t kEndless = 1u << 20;  // rows of a roll
 
-/// Cells to leave free on both sides of a taken one, by distance in rows, so that `gap` cells lie between.
-std::vector<int> reach_of(double gap) {
-    std::vector<int> reach;
-    for (int dy = 0; std::max(dy - 1, 0) < gap; ++dy) {
-        const double left = gap * gap - std::pow(std::max(dy - 1, 0), 2);
-        int dx = 0;
-        while (dx * dx < left) ++dx;
-        reach.push_back(dx);
-    }
-    if (reach.empty()) reach.push_back(0);
-    return reach;
-}
-
 }  // namespace
 
 std::vector<NestPlace> nest(const std::vector<NestItem>& items, const Vec2& area, double gap) {
@@ -51,7 +38,7 @@ std::vector<NestPlace> nest(const std::vector<NestItem>& items, const Vec2& area
         if (!possible) continue;
         NestPlace& place = places[i];
         for (std::size_t page = 0; !place.fits; ++page) {
-            if (page == pages.size()) pages.emplace_back(width, reach_of(gap / cell));
+            if (page == pages.size()) pages.emplace_back(width, atlas::reach_by_row(gap / cell));
             std::uint32_t lowest = kNone;
             atlas::Strip::Spot best;
             for (std::size_t k = 0; k < masks.size(); ++k) {

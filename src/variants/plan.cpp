@@ -1,7 +1,6 @@
 #include "variants/plan.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <functional>
 #include <set>
@@ -9,8 +8,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "core/system/files.h"
-#include "core/system/library_fault.h"
-#include "core/text/nesting.h"
+#include "core/system/toml_text.h"
 #include "core/text/text.h"
 
 namespace fs = std::filesystem;
@@ -222,15 +220,9 @@ void make_distinct(std::vector<Task>& tasks) {
 }  // namespace
 
 Plan parse_plan(const std::string& text, const std::string& source, const fs::path& folder) {
-    check_toml_nesting(text, source);
     Plan plan;
     plan.folder = folder;
-    toml::table table;
-    try {
-        table = toml::parse(text);
-    } catch (const toml::parse_error& fault) {
-        throw Error(source, static_cast<long>(fault.source().begin.line), toml_fault(fault.description()));
-    }
+    const toml::table table = parse_toml(text, source);
     read_table(table, source,
                {{"name", [&](const Value& v) { plan.name = v.text(); }},
                 {"seed", [&](const Value& v) { plan.seed = static_cast<std::uint64_t>(v.whole(0, 1'000'000'000)); }},

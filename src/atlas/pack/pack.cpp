@@ -142,7 +142,7 @@ class Packer {
         if (p < filling_.size())
             filling_[p].clear();
         else
-            filling_.emplace_back(page.cells, reach_of_gutter(page.cell));
+            filling_.emplace_back(page.cells, reach_by_row(static_cast<double>(gutter_) / page.cell));
     }
 
     /// Fills pages one after the other, each chart on the first that has room for it. The last
@@ -439,21 +439,6 @@ class Packer {
         } else {
             plan_.turn[order[pick()]] = kind < 0.75 ? 0 : random.uniform(0, std::numbers::pi / 2);
         }
-    }
-
-    /// Cells to block on both sides of a taken one, by row distance: those less than a
-    /// gutter away. Cells d apart (in x and y) have |(max(d − 1, 0)) cell| between them.
-    std::vector<int> reach_of_gutter(std::uint32_t cell) const {
-        std::vector<int> reach;
-        const double g = static_cast<double>(gutter_) / cell;
-        for (int dy = 0; std::max(dy - 1, 0) < g; ++dy) {
-            const double left = g * g - std::pow(std::max(dy - 1, 0), 2);
-            int dx = 0;
-            while (dx * dx < left) ++dx;
-            reach.push_back(dx);
-        }
-        if (reach.empty()) reach.push_back(0);
-        return reach;
     }
 
     std::uint32_t gutter_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <span>
 
 #include "core/simd.h"
@@ -18,6 +19,18 @@ template <std::size_t n>
 using Words = std::array<std::uint64_t, n>;
 
 }  // namespace
+
+std::vector<int> reach_by_row(double gap) {
+    std::vector<int> reach;
+    for (int dy = 0; std::max(dy - 1, 0) < gap; ++dy) {
+        const double left = gap * gap - std::pow(std::max(dy - 1, 0), 2);
+        int dx = 0;
+        while (dx * dx < left) ++dx;
+        reach.push_back(dx);
+    }
+    if (reach.empty()) reach.push_back(0);
+    return reach;
+}
 
 Strip::Strip(std::uint32_t width, std::vector<int> reach)
     : width_(width), words_(width / 64 + 1), stride_(words_ + kPadding), reach_(std::move(reach)) {

@@ -7,14 +7,18 @@
 #include "atlas/pack/pack_mask.h"
 
 /// \file
-/// Strip of occupied cells into which the packer places masks. Internal to atlas/pack.
+/// Strip of occupied cells into which masks are placed: charts by the packer, pieces of film by decal/nest.h.
 namespace tuft::atlas {
+
+/// Returns how many cells stay free on both sides of a taken one, by distance in rows from 0 on, so that everything
+/// else is at least `gap` cells away. Cells dx and dy apart have √(max(dx − 1, 0)² + max(dy − 1, 0)²) between them.
+std::vector<int> reach_by_row(double gap);
 
 /// A strip of cells, open upwards. Level k of a row stores whether any of the 2^k cells from x on is occupied: a
 /// run of any length is tested at 64 positions with two words. Levels are built on demand.
 class Strip {
   public:
-    /// `reach`: cells to keep free on both sides of a taken one, by distance in rows.
+    /// `reach`: see `reach_by_row`. `width` in cells.
     Strip(std::uint32_t width, std::vector<int> reach);
 
     struct Spot {

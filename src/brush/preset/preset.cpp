@@ -1,7 +1,5 @@
 #include "brush/preset/preset.h"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -12,9 +10,8 @@
 
 #include "core/error.h"
 #include "core/system/files.h"
-#include "core/system/library_fault.h"
 #include "core/system/shipped_file.h"
-#include "core/text/nesting.h"
+#include "core/system/toml_text.h"
 #include "core/text/units.h"
 
 namespace tuft::brush {
@@ -276,13 +273,7 @@ void check_preset(const Preset& p, const std::string& source) {
 }
 
 Preset parse_preset(std::string_view text, const std::string& source, const std::optional<fs::path>& folder) {
-    check_toml_nesting(text, source);
-    toml::table root;
-    try {
-        root = toml::parse(text);
-    } catch (const toml::parse_error& e) {
-        fail(source, static_cast<long>(e.source().begin.line), toml_fault(e.description()));
-    }
+    const toml::table root = parse_toml(text, source);
     Preset p;
     for (const auto& [key, node] : root) {
         const std::string name(key.str());

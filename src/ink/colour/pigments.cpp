@@ -120,7 +120,7 @@ double Ink::strength() const {
 }
 
 Ink parse_ink(std::string_view text, const std::string& source) {
-    const toml::table table = preset::parse_table(text, source);
+    const toml::table table = parse_toml(text, source);
     const preset::Reader in(table, source);
     in.only({"name", "title", "film", "supply", "supply_length_mm", "transfer_length_mm", "yield_pa", "pigment"});
     Ink ink;
@@ -166,7 +166,7 @@ std::string ink_toml(const Ink& ink) {
 }
 
 Pigment parse_pigment(std::string_view text, const std::string& source) {
-    const toml::table table = preset::parse_table(text, source);
+    const toml::table table = parse_toml(text, source);
     const preset::Reader in(table, source);
     in.only(kPigmentKeys);
     for (const char* key : {"fraction", "preset"})

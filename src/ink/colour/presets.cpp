@@ -9,9 +9,7 @@
 
 #include "core/error.h"
 #include "core/system/files.h"
-#include "core/system/library_fault.h"
 #include "core/system/shipped_file.h"
-#include "core/text/nesting.h"
 
 namespace fs = std::filesystem;
 
@@ -94,15 +92,6 @@ const toml::array& Reader::array(std::string_view key) const {
     if (!node) fail(line(), Message("'{}' is missing", std::string(key)));
     if (!node->as_array()) fail(line_of(key), Message("'{}' must be a list of numbers", std::string(key)));
     return *node->as_array();
-}
-
-toml::table parse_table(std::string_view text, const std::string& source) {
-    check_toml_nesting(text, source);
-    try {
-        return toml::parse(text);
-    } catch (const toml::parse_error& e) {
-        throw Error(source, e.source().begin.line, toml_fault(e.description()));
-    }
 }
 
 std::vector<std::string> list(const char* folder) {

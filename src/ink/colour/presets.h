@@ -1,7 +1,5 @@
 #pragma once
 
-#include <toml++/toml.h>
-
 #include <optional>
 #include <span>
 #include <string>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "core/message.h"
+#include "core/system/toml_text.h"
 #include "ink/spectra/spectrum.h"
 
 /// \file
@@ -39,9 +38,6 @@ class Reader {
     const toml::table& table_;
     const std::string& source_;
 };
-
-/// Throws `Error` with file and line.
-toml::table parse_table(std::string_view text, const std::string& source);
 
 /// Names of the files in models/`folder`, sorted.
 std::vector<std::string> list(const char* folder);

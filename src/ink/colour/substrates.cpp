@@ -9,7 +9,7 @@ using preset::shortest_float;
 using preset::shortest_in;
 
 Substrate parse_substrate(std::string_view text, const std::string& source) {
-    const toml::table table = preset::parse_table(text, source);
+    const toml::table table = parse_toml(text, source);
     const preset::Reader in(table, source);
     in.only({"name",         "title",     "reflectance",    "roughness",         "metallic",
              "transmission", "capacity",  "interface",      "relief_um",         "relief_length_um",

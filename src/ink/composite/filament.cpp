@@ -80,7 +80,7 @@ FilamentChoice choose_filament(std::span<const ColourPatch> patches, std::span<c
 std::vector<Filament> load_filaments(const std::filesystem::path& path) {
     const std::vector<char> bytes = read_file(path, kMostBytes);
     const std::string source = path.string();
-    const toml::table root = preset::parse_table({bytes.data(), bytes.size()}, source);
+    const toml::table root = parse_toml({bytes.data(), bytes.size()}, source);
     const toml::array* list = root["filament"].as_array();
     if (root.size() != 1 || !list || list->empty() || !list->is_homogeneous(toml::node_type::table))
         throw Error(source, "must have [[filament]] tables and nothing else");

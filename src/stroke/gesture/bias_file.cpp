@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <cmath>
 #include <iterator>
@@ -7,8 +6,7 @@
 
 #include "core/error.h"
 #include "core/system/files.h"
-#include "core/system/library_fault.h"
-#include "core/text/nesting.h"
+#include "core/system/toml_text.h"
 #include "core/text/units.h"
 #include "stroke/gesture/bias_correction.h"
 
@@ -117,13 +115,7 @@ std::string bias_toml(const BiasCorrection& bias) {
 }
 
 BiasCorrection parse_bias(std::string_view text, const std::string& source) {
-    check_toml_nesting(text, source);
-    toml::table root;
-    try {
-        root = toml::parse(text);
-    } catch (const toml::parse_error& e) {
-        throw Error(source, static_cast<long>(e.source().begin.line), toml_fault(e.description()));
-    }
+    const toml::table root = parse_toml(text, source);
     BiasCorrection bias;
     for (const auto& [key, node] : root) {
         const Field field{node, source, std::string(key.str())};

@@ -1,14 +1,11 @@
 #include "writer/gesture/style.h"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <map>
 
 #include "core/error.h"
 #include "core/system/files.h"
-#include "core/system/library_fault.h"
-#include "core/text/nesting.h"
+#include "core/system/toml_text.h"
 #include "core/text/units.h"
 
 namespace fs = std::filesystem;
@@ -88,13 +85,7 @@ std::vector<std::string> list_styles() {
 }
 
 Style parse_style(std::string_view text, const std::string& source) {
-    check_toml_nesting(text, source);
-    toml::table root;
-    try {
-        root = toml::parse(text);
-    } catch (const toml::parse_error& e) {
-        throw Error(source, static_cast<long>(e.source().begin.line), toml_fault(e.description()));
-    }
+    const toml::table root = parse_toml(text, source);
     Style style;
     for (const auto& [key, node] : root) read_key(style, std::string(key.str()), node, source);
     style.name = root["name"].value_or(fs::path(source).stem().string());
