@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # check_documents.sh SOURCE: what the documents name exists: the targets of links, paths of files in `back quotes`, files
 # of the code by their bare names, such as (deposit.h), and in READMEs of src/ the names of functions and types in `back
-# quotes`. Names with a capital NAME in them are patterns.
+# quotes`, and the folders of each module in its table. Names with a capital NAME in them are patterns.
 set -euo pipefail
 export LC_ALL=C
 cd "$1"
@@ -35,4 +35,15 @@ while read -r document; do
   done < <(grep -oE '`[A-Za-z_][A-Za-z0-9_:]*(\([^`]*\))?`' "$lists/text" | tr -d '`' | sed -E 's/\(.*//; s/.*:://' |
     grep -E '_|[a-z][A-Z]' | grep -v NAME | sort -u | comm -23 - "$lists/names")
 done < <(find README.md src tests samples models -name '*.md' -not -path '*/build/*')
+# The table of modules in src/README.md names the folders of each.
+folders_named() { grep -oE '`[a-z]+`' <<<"$1" | tr -d '`' | grep -vx "$2" | sort || true; }
+folders_there() {
+  find "src/$1" -mindepth 2 \( -name '*.h' -o -name '*.cpp' \) | sed -E "s|^src/$1/([^/]*)/.*|\1|" | sort -u
+}
+while IFS='|' read -r _ _ module folders _; do
+  module=$(grep -oE '`[a-z]+`' <<<"$module" | head -1 | tr -d '`')
+  while read -r folder; do
+    missing src/README.md "src/$module/$folder stands only in the table of modules or only in the tree"
+  done < <(comm -3 <(folders_named "$folders" "$module") <(folders_there "$module") | tr -d '\t')
+done < <(grep -E '^\| [0-9] \|' src/README.md)
 exit $bad

@@ -72,6 +72,7 @@ std::optional<ColourSpace> colour_space_named(std::string_view name) {
 
 std::vector<std::string_view> colour_space_names() {
     std::vector<std::string_view> names;
+    names.reserve(kSpaces.size());
     for (const ColourSpaceData& d : kSpaces) names.push_back(d.name);
     return names;
 }
