@@ -155,6 +155,7 @@ void note_inks(const std::vector<stroke::JournalEntry>& strokes, const stroke::D
     if (all.empty()) return;
     std::stable_sort(all.begin(), all.end(), [](const Reached& a, const Reached& b) { return a.delta_e > b.delta_e; });
     std::vector<std::string> named;
+    named.reserve(std::min(kNamed, all.size()));
     for (std::size_t i = 0; i < std::min(kNamed, all.size()); ++i)
         named.push_back(fmt::format("{} {:.1f}", all[i].ink, all[i].delta_e));
     console.note(fmt::format("{} ink{} of the drawing, mixed for {}; dE2000 from its colour: {}{}", all.size(),

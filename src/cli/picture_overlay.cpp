@@ -61,6 +61,7 @@ void PictureOverlay::draw_text(const std::string& text, const Vec2& corner, doub
     for (const double halo : {1.0, 0.0})
         for (const std::vector<Vec2>& l : decal::text_lines(text, Vec2(0), size)) {
             std::vector<Vec2> points;
+            points.reserve(l.size());
             for (const Vec2& q : l) points.push_back(corner + Vec2(q.x, -q.y));
             stroke(points, halo > 0 ? 0.3 * size : 0.13 * size, halo > 0 ? Vec3(1) : colour);
         }

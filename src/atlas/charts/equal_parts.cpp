@@ -255,6 +255,7 @@ CutMesh with_copies(const mesh::TriangleMesh& mesh, const EqualParts& parts, std
     for (std::uint32_t t = 0; t < mesh.n_triangles(); ++t)
         charts[{chart_of[rank[parts.source[3 * t] / 3]], parts.part[t]}].push_back(t);
     std::vector<std::pair<std::uint32_t, Triangles>> all;
+    all.reserve(charts.size());
     for (auto& [key, triangles] : charts) all.emplace_back(key.first, std::move(triangles));
     cut.charts.resize(all.size());
     run_tasks(all.size(), [&](std::size_t i) {

@@ -79,6 +79,7 @@ Eigen::Vector3d residual(const Lab& lab, const Lab& wanted) {
 /// Levels of an amount from a hundredth of `most` up to it, evenly in the logarithm.
 std::vector<double> levels(double most, int n) {
     std::vector<double> out;
+    out.reserve(static_cast<std::size_t>(n));
     for (int i = 0; i < n; ++i) out.push_back(most * std::pow(0.01, static_cast<double>(n - 1 - i) / (n - 1)));
     return out;
 }

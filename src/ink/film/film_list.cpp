@@ -388,6 +388,7 @@ std::vector<Drips::Seed> TileList::seeds_of_beads(const Canvas& canvas, const Fi
         found.end());
     std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.height < b.height; });
     std::vector<Drips::Seed> seeds;
+    seeds.reserve(std::min(found.size(), kMostBeads));
     for (std::size_t i = 0; i < std::min(found.size(), kMostBeads); ++i) seeds.push_back(found[i].seed);
     return seeds;
 }

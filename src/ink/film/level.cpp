@@ -43,6 +43,7 @@ TUFT_CLONES void step(float* __restrict next, const float* __restrict now, const
 std::vector<Tile> tiles_of(const Canvas& canvas, const atlas::TexelMap& map, const atlas::SeamLinks& seams,
                            const OpenBefore& before) {
     std::vector<std::uint32_t> slots;
+    slots.reserve(before.size());
     for (const auto& [slot, plane] : before) slots.push_back(slot);
     std::sort(slots.begin(), slots.end());
     std::vector<Tile> tiles = halo_tiles<Tile>(map, seams, slots);

@@ -257,6 +257,7 @@ Plane dry_relief(const Canvas& canvas, std::uint32_t slot) {
 void pool(Canvas& canvas, const atlas::TexelMap& map, const atlas::SeamLinks& seams,
           std::span<const TileSnapshot* const> before, const PoolOptions& options) {
     std::vector<std::uint32_t> slots;
+    slots.reserve(before.size());
     for (const TileSnapshot* tile : before) slots.push_back(tile->slot);
     std::vector<Tile> tiles = halo_tiles<Tile>(map, seams, slots);
     bool any = false;

@@ -130,6 +130,7 @@ class FilmPipe : public FilmSink {
         if (program.empty()) throw Error("ffmpeg", "is not installed");
         std::vector<std::string> words = ffmpeg_arguments(program, output, format);
         std::vector<char*> arguments;
+        arguments.reserve(words.size() + 1);
         for (std::string& word : words) arguments.push_back(word.data());
         arguments.push_back(nullptr);
         int ends[2];

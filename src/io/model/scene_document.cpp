@@ -58,6 +58,7 @@ void move_view(json& view, const std::vector<std::size_t>& starts, const std::st
 void pack_buffers(json& document, mesh::SourceScene& scene, std::span<const std::vector<unsigned char>> buffers,
                   const std::string& name) {
     std::vector<std::size_t> starts;
+    starts.reserve(buffers.size());
     for (const std::vector<unsigned char>& bytes : buffers) starts.push_back(append_bytes(scene.buffer, bytes));
     if (!document.contains("bufferViews")) return;
     for (json& view : array_of(document, "bufferViews")) {

@@ -225,6 +225,7 @@ std::vector<Line> runs_at(const Shape& shape, const std::vector<std::vector<Edge
     for (const Ring& ring : inner.rings()) {
         Line curve = smooth(ring, chord);
         std::vector<bool> wanted;
+        wanted.reserve(curve.size());
         for (const Vec2& p : curve)
             wanted.push_back(open.any(p, [&](const Vec2& q) { return glm::distance(p, q) < beside; }));
         if (curve.size() < 2) continue;

@@ -86,6 +86,7 @@ void draw_mesh(BrushCanvas& canvas, const TuftShape& shape, const BrushView& vie
 void draw_lines(BrushCanvas& canvas, const TuftShape& shape, const BrushView& view) {
     const CarriedShape& carried = *shape.carried;
     std::vector<Piece> pieces;
+    pieces.reserve(carried.lines.size());
     for (std::uint32_t i = 0; i < carried.lines.size(); ++i)
         pieces.push_back({glm::dot(shape.position[carried.lines[i][carried.lines[i].size() / 2]], view.toward()), i});
     sort_by_distance(pieces);

@@ -117,6 +117,7 @@ TilePlan TileReach::tiles_at(std::span<const ReachedPlace> places) const {
     TilePlan tiles;
     std::vector<ReachedPlace> near;
     std::vector<Ball> balls;
+    balls.reserve(places.size());
     for (const ReachedPlace& place : places) balls.push_back(place.ball);
     const Ball all = ball_around(balls);
     for (std::size_t g = 0; g < groups_.size(); ++g) {

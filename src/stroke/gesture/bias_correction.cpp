@@ -153,6 +153,7 @@ double unlike(const BiasPiece& a, const BiasPiece& b) {
 // Gives a piece the corrections of the learned pieces most like it.
 void correct(BiasPiece& piece, const BiasCorrection& bias) {
     std::vector<std::pair<double, std::size_t>> near;
+    near.reserve(bias.pieces.size());
     for (std::size_t i = 0; i < bias.pieces.size(); ++i) near.emplace_back(unlike(piece, bias.pieces[i]), i);
     const std::size_t n = std::min<std::size_t>(kLike, near.size());
     std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(n), near.end());

@@ -43,6 +43,7 @@ std::vector<Pair> find_pairs(std::span<const OrientedPoint> points, const mesh::
     }
     if (pairs.empty()) return pairs;
     std::vector<double> distances;
+    distances.reserve(pairs.size());
     for (const Pair& pair : pairs) distances.push_back(pair.apart);
     const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
     std::nth_element(distances.begin(), middle, distances.end());

@@ -85,6 +85,7 @@ template <class Sample>
 std::vector<double> tip_depths(std::span<const Sample> samples, const HolderOptions& options) {
     const std::vector<double> along = travelled(samples);
     std::vector<double> depths;
+    depths.reserve(samples.size());
     for (const Sample& s : samples)
         depths.push_back(s.pressure > 0 ? std::min(s.pressure, 1.0) * options.working_depth : -options.hover);
     const auto settle = [&](std::size_t i, std::optional<std::size_t>& pressed) {

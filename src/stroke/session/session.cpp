@@ -70,6 +70,7 @@ void StrokeSession::check_length(std::span<const brush::Pose> poses) const {
     if (input_.stroke.trace.flat) return check_path_length(poses, path_options());
     GestureFilter state;
     std::vector<brush::Pose> steadied;
+    steadied.reserve(poses.size());
     for (const brush::Pose& pose : poses) steadied.push_back(steady(state, pose, input_.stroke.settings));
     check_path_length(steadied, path_options());
 }

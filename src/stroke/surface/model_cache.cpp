@@ -73,6 +73,7 @@ Message get_message(CacheReader& entry, std::size_t depth = 0) {
     const std::vector<std::uint64_t> facts = entry.get<std::uint64_t>();
     require(facts.size() == 2 && facts[1] <= 64);
     std::vector<Message> arguments;
+    arguments.reserve(facts[1]);
     for (std::uint64_t i = 0; i < facts[1]; ++i) arguments.push_back(get_message(entry, depth + 1));
     return {std::move(words), facts[0] != 0, std::move(arguments)};
 }
