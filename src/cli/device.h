@@ -30,6 +30,7 @@ std::unique_ptr<haptic::Device> open_device(const DeviceWork& arguments, const h
 /// Returns the workspace in which the arm at `state` has the tuft's root at `root`.
 haptic::Workspace workspace_at(const haptic::DeviceState& state, const Vec3& root);
 
+/// Performs `tuft device test`. Returns the exit status.
 int test_device(const DeviceWork& arguments);
 
 }  // namespace tuft::cli

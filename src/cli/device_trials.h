@@ -22,8 +22,10 @@ struct Places {
 /// The shipped models with their edges and grooves, or `--model` and its sharpest edge.
 Places places_of(const DeviceWork& a);
 
+/// Returns the options of one trial that the arguments state.
 haptic::TrialOptions trial_options(const DeviceWork& a, const brush::Preset& preset);
 
+/// Worst figures of several trials.
 struct Trials {
     haptic::TrialReport worst;  ///< `seconds`: of the solves of the plain motions
     std::size_t count = 0;

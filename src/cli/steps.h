@@ -86,6 +86,7 @@ render::Image draw_picture(const PictureRequest& request, Console& console);
 /// Returns the viewpoint from which `draw_picture` draws a model.
 render::View picture_view(const View& view, const mesh::TriangleMesh& mesh);
 
+/// Writes a picture in the format of its extension. Throws `Error`.
 void write_picture(const std::filesystem::path& path, const render::Image& image);
 
 /// Loads the brushes and inks of the strokes. Throws `Error` for an unknown one, before any ink flows.

@@ -10,11 +10,13 @@
 /// Plots as SVG texts, for the page of `tuft bench`.
 namespace tuft::cli {
 
+/// One line of a plot.
 struct PlotSeries {
     std::string name;
     std::vector<Vec2> points;  ///< ascending in x
 };
 
+/// A plot of several lines over common axes.
 struct Plot {
     std::string title, x_label, y_label;
     bool log_x = false, log_y = false;

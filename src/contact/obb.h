@@ -19,6 +19,7 @@ struct Obb {
 /// Lin and Manocha 1996.
 Obb obb_of(std::span<const Vec3> points, double margin = 0);
 
+/// Returns a box along the axes as an oriented one.
 Obb obb_of(const Box& box);
 
 /// Returns true when two boxes overlap or touch: test of the 15 separating axes.

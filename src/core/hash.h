@@ -11,6 +11,7 @@ namespace tuft {
 /// XXH3 64-bit hash of raw bytes; chain calls by passing the last result as seed.
 std::uint64_t hash_bytes(const void* data, std::size_t size, std::uint64_t seed = 0);
 
+/// Returns the hash of the bytes of `values`.
 template <class T>
 std::uint64_t hash_span(std::span<const T> values, std::uint64_t seed = 0) {
     static_assert(std::is_trivially_copyable_v<T>);

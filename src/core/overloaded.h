@@ -1,5 +1,7 @@
 #pragma once
 
+/// \file
+/// One function for each alternative of a variant.
 namespace tuft {
 
 /// Functions for `std::visit`, one for each alternative of a variant. One that is missing does not compile.

@@ -20,10 +20,12 @@ Vec2 free_origin();
 /// Returns the length of a roll whose pieces end at height `used`.
 double roll_length(double used);
 
+/// Returns the width of a piece's number on the page, metres.
 double label_width(int number);
 /// Draws a number and an arrow that points along `up` (unit, on the page) into the box at `at`.
 void add_label(Page& page, int number, const Vec2& at, const Vec2& up);
 
+/// What the foot of a page states.
 struct FootText {
     std::string title;
     std::size_t page = 1, pages = 1;

@@ -19,6 +19,7 @@ using Region = std::vector<Ring>;
 double area_of(const Ring& ring);
 double area_of(const Region& region);
 
+/// Return union, intersection and difference of two regions.
 Region unite(const Region& a, const Region& b);
 Region intersect(const Region& a, const Region& b);
 Region subtract(const Region& a, const Region& b);

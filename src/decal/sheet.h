@@ -53,6 +53,7 @@ struct Plate {
     double full = 1;                        ///< film units of a tint of 100 %
 };
 
+/// Pages of film, ready to be written.
 struct Sheet {
     std::vector<Page> pages;
     std::vector<Piece> pieces;
@@ -63,6 +64,7 @@ struct Sheet {
     std::vector<std::uint8_t> profile = {};
 };
 
+/// Options of `make_sheet`.
 struct SheetOptions {
     double max_strain = 0.03;     ///< of the film
     double bleed = 0.003;         ///< film beyond the paint, metres

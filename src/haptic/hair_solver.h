@@ -12,6 +12,7 @@
 /// root. The solver's thread calls it (loop.h), and the trial in virtual time (trial.h). Deterministic.
 namespace tuft::haptic {
 
+/// Options of `HairSolver`.
 struct SolverOptions {
     contact::Options contact;
     double proximity_force = 0;   ///< N on the hair's scale, rises over the last millimetre before the hair touches
@@ -20,6 +21,7 @@ struct SolverOptions {
     double ferrule_wall = 5e-4;   ///< m, by which ferrule and handle are thicker than the tuft's root
 };
 
+/// The hair under the hand: a tuft on a surface, bent pose after pose.
 class HairSolver {
   public:
     /// `surface` must outlive the object.

@@ -13,6 +13,7 @@
 /// that speaks it for the simulated arm.
 namespace tuft::haptic {
 
+/// Address of the service.
 struct HaplyAddress {
     std::string host = "127.0.0.1";
     int port = 10001;
@@ -46,6 +47,7 @@ class HaplyDevice : public Device {
 /// What a server of the simulated arm does wrong on purpose, for tests.
 enum class ServerFault { none, dies, not_a_number, jumps, silent, floods };
 
+/// Options of the simulated service.
 struct ServerOptions {
     int port = 10001;                       ///< 0: any free one
     double rate = 1000;                     ///< states per second

@@ -44,6 +44,7 @@
 /// It holds while the hand accelerates by less than 60 m/s² and the wrist by less than 500 rad/s².
 namespace tuft::haptic {
 
+/// Constants of the law.
 struct LawOptions {
     DeviceLimits limits;
     double gain = 15;                 ///< G: force on the hand over force of the hair
@@ -81,6 +82,7 @@ struct LawState {
     bool free = true;         ///< neither hair nor ferrule touches
 };
 
+/// What one period of the law takes.
 struct LawInput {
     Vec3 arm{0};                       ///< x, m, world
     Quat rotation{1, 0, 0, 0};         ///< q
@@ -89,6 +91,7 @@ struct LawInput {
     double pass = 1;  ///< of the force: 0 on a fault or a pause … 1; scales what leaves, before the tank
 };
 
+/// What one period of the law gives.
 struct LawOutput {
     Vec3 force{0};         ///< f on the hand, N, world
     Vec3 torque{0};        ///< N·m, world; 0 for an arm without torque

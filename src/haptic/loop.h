@@ -29,6 +29,7 @@ struct LatenessHistogram {
     double quantile(double share) const;
 };
 
+/// Options of the loop.
 struct LoopOptions {
     LawOptions law;
     int servo_priority = 20, solver_priority = 10;  ///< SCHED_FIFO; 0: as other threads

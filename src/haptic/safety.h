@@ -24,6 +24,7 @@ Message describe(Fault fault);
 /// 1 up to 5 periods of age, 0 from 18 on: for answers of the solver and states of the device.
 double trust_at_age(std::uint64_t periods);
 
+/// What safety allows in one period.
 struct Verdict {
     bool engaged = false;       ///< the law runs
     bool restart = false;       ///< and begins here, in the air
@@ -31,6 +32,7 @@ struct Verdict {
     Fault fault = Fault::none;  ///< why it is less than 1, beside the ramp
 };
 
+/// Decides in each period whether force may leave.
 class Safety {
   public:
     /// `fresh`: the state that came in this period, or null.

@@ -24,6 +24,7 @@ struct ServoControl {
     Workspace workspace;
 };
 
+/// Result of one period of the servo.
 struct ServoOutput {
     DeviceCommand command;  ///< in the arm's frame
     Vec3 force{0};          ///< N, on the hand, world

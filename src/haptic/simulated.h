@@ -34,6 +34,7 @@ struct HandTarget {
 };
 using HandPath = std::function<HandTarget(double time)>;
 
+/// The hand and the wire of a simulated arm.
 struct SimulationOptions {
     HandModel hand;
     double delay = 0;   ///< s, from a command to the motors

@@ -12,6 +12,7 @@
 /// (`stroke::Document::begin`, `extend`, `end`).
 namespace tuft::haptic {
 
+/// Cuts a sequence of solved poses into strokes.
 class StrokeCutter {
   public:
     /// What the next pose means for the painting.

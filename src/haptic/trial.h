@@ -40,6 +40,7 @@ bool is_tap(HandMotion motion);
 /// motion; else heading, pace and place vary.
 HandPath hand_path(HandMotion motion, const TrialPlace& place, const brush::Preset& brush, std::uint64_t seed = 0);
 
+/// Options of one trial.
 struct TrialOptions {
     LawOptions law;
     SolverOptions solver;
@@ -67,6 +68,7 @@ struct TrialReport {
     Vec3 last_hair{0};  ///< N, of the hair at the end
 };
 
+/// Moves the simulated hand along `path` and returns what happened. Virtual time: the same input gives the same bits.
 TrialReport run_trial(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface, const HandPath& path,
                       const TrialOptions& options);
 

@@ -8,6 +8,7 @@
 /// library. Used by the kernels of `ink`.
 namespace tuft::ink {
 
+/// Return the larger and the smaller of two numbers; the second where they are unordered.
 [[gnu::always_inline]] inline float larger(float a, float b) {
     return a > b ? a : b;
 }

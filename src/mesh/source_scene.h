@@ -22,6 +22,7 @@ struct ScenePart {
     bool operator==(const ScenePart&) const = default;
 };
 
+/// Objects, groups and materials of a model's file.
 struct SourceScene {
     std::vector<ScenePart> parts;
     std::string document;               ///< JSON of a glTF 2.0 file with one buffer and no outside files

@@ -16,6 +16,7 @@
 /// no degenerate or duplicate triangles, every index in range, every number finite.
 namespace tuft::mesh {
 
+/// A surface of triangles.
 struct TriangleMesh {
     std::vector<Vec3f> positions;                         ///< [n_vertices], metres
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< [n_triangles] vertex indices

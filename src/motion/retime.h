@@ -15,6 +15,7 @@ struct Waypoint {
     Vec3 force{0};  ///< newtons, of the surface on the tuft, model frame
 };
 
+/// Limits of the tool.
 struct Limits {
     double speed = 0.25;      ///< m/s
     double acceleration = 1;  ///< m/s²

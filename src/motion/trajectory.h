@@ -31,20 +31,24 @@ enum class MoveKind {
     retract,  ///< back along the axis
     travel,   ///< from stroke to stroke, clear of the model
 };
+/// Returns the word of a kind in files.
 const char* name_of(MoveKind kind);
 
+/// A stroke, or a motion without contact.
 struct Move {
     MoveKind kind = MoveKind::stroke;
     std::size_t stroke = 0;        ///< index of the stroke that it belongs to, or leads to
     std::vector<Waypoint> points;  ///< from rest to rest; times from the start of the trajectory
 };
 
+/// The motion of the tool over all strokes.
 struct Trajectory {
     std::vector<Move> moves;  ///< each begins where and when the one before it ends
 
     double seconds() const { return moves.empty() ? 0 : moves.back().points.back().pose.time; }
 };
 
+/// Options of `plan`.
 struct MotionOptions {
     Limits limits;
     Holder holder;

@@ -24,6 +24,7 @@ struct FilmOptions {
     ProgressFn progress;
 };
 
+/// Length of a film.
 struct FilmLength {
     int frames = 0;           ///< with those of the end
     double work_seconds = 0;  ///< for which the hand was at work

@@ -8,6 +8,7 @@
 /// Names in pictures, in the strokes of decal/stroke_font.h.
 namespace tuft::variants {
 
+/// Size and colour of a line of text.
 struct LetteringOptions {
     double size = 11;    ///< pixels, height of a capital
     double width = 1e9;  ///< pixels; a longer text is made narrower down to 60 %, then cut

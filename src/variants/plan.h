@@ -7,6 +7,7 @@
 /// of every tolerance. Read from TOML by `tuft variants`. samples/variants/plan.toml shows all keys.
 namespace tuft::variants {
 
+/// A plan as its file states it.
 struct Plan {
     std::filesystem::path folder;  ///< of the plan's file; all files lie in it
     std::string name;

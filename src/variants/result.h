@@ -20,6 +20,7 @@ inline constexpr float kPaintedFilm = 0.05f;
 /// Most places on the surface that a result retains.
 inline constexpr std::size_t kMostFeet = 4000;
 
+/// Figures of one variant.
 struct Figures {
     std::string canvas_hash;       ///< 16 hexadecimal digits of the hash of all texels
     double ink_area_mm2 = 0;       ///< of the painted texels
@@ -45,6 +46,7 @@ struct Coverage {
     bool operator==(const Coverage&) const = default;
 };
 
+/// Result of one task.
 struct Outcome {
     Figures figures;
     Coverage coverage;

@@ -8,6 +8,7 @@
 /// INDEX`.
 namespace tuft::variants {
 
+/// What a job script names.
 struct ScriptOptions {
     std::filesystem::path folder;   ///< of the tasks, absolute
     std::filesystem::path program;  ///< tuft

@@ -49,6 +49,7 @@ struct Tolerance {
     bool operator==(const Tolerance&) const = default;
 };
 
+/// Which variants get a picture, and from where.
 struct PictureChoice {
     std::string of = "all";          ///< all, planned (those without deviation), none
     int width = 320, height = 240;   ///< pixels

@@ -14,6 +14,7 @@ namespace tuft::variants {
 /// Returns the model of a task. The reference is valid until the next call.
 using ModelOf = std::function<const stroke::Model&(const Task& task)>;
 
+/// Tolerance maps of one decoration.
 struct MapRow {
     std::size_t planned = 0;  ///< task without deviation
     std::string name;         ///< of the decoration and the tolerance

@@ -15,6 +15,7 @@ namespace tuft::variants {
 bool report_start(std::size_t i);
 bool report_ran(std::size_t i, Ran ran);
 
+/// Worker processes to start.
 struct WorkerOptions {
     std::vector<std::string> command;  ///< a worker's command line; command[0] is a path. It runs all open tasks that
                                        ///< no other process has
@@ -22,6 +23,7 @@ struct WorkerOptions {
     ProgressFn progress;  ///< called several times a second
 };
 
+/// What the workers did.
 struct WorkersReport {
     std::size_t painted = 0, failed = 0;  ///< by these workers
     std::size_t ended = 0;                ///< workers that were killed or crashed, and were replaced

@@ -46,7 +46,9 @@ void forget_lost_work(const LostWork& work, bool remove_project);
 /// Returns true when the project is in the state folder, so that it has no name of its own yet.
 bool is_unnamed(const std::filesystem::path& project);
 
+/// Returns the projects opened last, the newest first.
 std::vector<std::filesystem::path> recent_projects();
+/// Puts the project first in that list.
 void remember_project(const std::filesystem::path& project);
 
 /// Returns the path of the stored small picture of a file.

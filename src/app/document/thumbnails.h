@@ -13,6 +13,7 @@
 /// Small pictures of single layers on the bare model, for the list of layers. Paint thread.
 namespace tuft::app {
 
+/// Small picture of one layer.
 struct Thumbnail {
     std::uint32_t layer = 0;
     int width = 0, height = 0;       ///< pixels

@@ -7,6 +7,7 @@
 /// Commands that append one entry to the journal. Paint thread.
 namespace tuft::app {
 
+/// Perform the command, append its entry and store it. What cannot be done is reported to the window.
 void act_on_brush(PaintContext& context, JournalEditor& journal, const ActOnBrush& command);
 void fill_model(PaintContext& context, JournalEditor& journal, const FillModel& command);
 void change_layers(PaintContext& context, JournalEditor& journal, const ChangeLayers& command);

@@ -28,12 +28,14 @@ struct MenuParts {
     bool has_former_model;  ///< the open one was revised from it
     ArmState& arm;
 };
+/// What the undo buttons read and change.
 struct HistoryParts {
     Ui& ui;
     PaintThread& work;
     const PaintStatus& reported;
     const KeyTable& keys;
 };
+/// What the layers' section reads and changes.
 struct LayerParts {
     Ui& ui;
     LayerState& layers;
@@ -42,6 +44,7 @@ struct LayerParts {
     StatusMessage& status;
     bool viewing = false;  ///< the project is only looked at
 };
+/// What the journal's section reads and changes.
 struct JournalParts {
     Ui& ui;
     JournalState& journal;
@@ -52,6 +55,7 @@ struct JournalParts {
     Orbit& orbit;
     bool viewing = false;  ///< the project is only looked at
 };
+/// What the ink's section reads and changes.
 struct InkParts {
     Ui& ui;
     BrushSettings& brush;
@@ -60,12 +64,14 @@ struct InkParts {
     const PaintStatus& reported;
     FileDialog& files;
 };
+/// What the options of the chosen tool read and change.
 struct OptionParts {
     Ui& ui;
     ToolState& tools;
     BrushSettings& brush;
     StatusMessage& status;
 };
+/// What is read for the marks over the model.
 struct MarkParts {
     const Ui& ui;
     const ViewState& view;
@@ -75,6 +81,7 @@ struct MarkParts {
     const stroke::Model& model;
     const mesh::SurfaceQuery& surface;  ///< of the visible parts
 };
+/// What the section of the model's parts reads and changes.
 struct PartParts {
     Ui& ui;
     PartState& parts;

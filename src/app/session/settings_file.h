@@ -7,6 +7,8 @@
 /// and sections. Window thread.
 namespace tuft::app {
 
+/// Reads the settings of the last session. A key that is unknown is ignored, a value out of range becomes the nearest
+/// one.
 void load_settings(Session& s);
 /// Writes the file. A failure is ignored: the settings then hold for this run.
 void store_settings(const Session& s);

@@ -7,6 +7,8 @@
 /// Tools that click or drag over the model and do not paint: fill, eyedropper, masks, moving entries. Window thread.
 namespace tuft::app {
 
+/// Perform a click of the tools Fill, Pick and Mask at the event's place. The lasso of Mask follows the pointer until
+/// the button comes up.
 void press_fill(Session& s, const Event& e);
 void press_pick(Session& s, const Event& e);
 void press_mask(Session& s, const Event& e);

@@ -9,6 +9,7 @@
 /// Names in little room.
 namespace tuft::app {
 
+/// Space for one label.
 struct LabelRoom {
     std::size_t lines = 1;
     float width = 0;                                    ///< of a line

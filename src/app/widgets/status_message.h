@@ -14,6 +14,7 @@ struct StatusMessage {
     double seconds = 0;  ///< since it was set
 };
 
+/// Shows a message in place of the one before.
 inline void show_message(StatusMessage& status, Message text) {
     status = {std::move(text), 0};
 }

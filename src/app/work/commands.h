@@ -24,6 +24,7 @@ namespace tuft::app {
 /// Stands for the layer added last, whose command may not have run yet.
 inline constexpr std::uint32_t kNewestLayer = stroke::kPaletteLayer - 1;
 
+/// Pen down: a stroke begins with these settings.
 struct BeginStroke {
     std::string brush, ink;
     stroke::Symmetry symmetry;
@@ -44,6 +45,7 @@ struct ActOnBrush {
     double seconds = 0;          ///< of drying; 0: until dry
     stroke::Extent extent = {};  ///< of a dip or a wipe
 };
+/// Poses of the ferrule that continue the stroke.
 struct ExtendStroke {
     std::vector<brush::Pose> poses;
     double requested_at = 0;  ///< seconds on the window's clock, returned in `ProgressStatus::done`
@@ -124,11 +126,13 @@ struct LookFrom {
 struct SendTexture {
     bool wetness = false;  ///< the fourth channel is liquid instead of height
 };
+/// Stores the project under a path, where it stays open.
 struct SaveProject {
     std::filesystem::path path;
 };
 /// Tries again to write waiting changes.
 struct RetrySaving {};
+/// Writes the textured model, one map or pictures, by the extension of `path`.
 struct ExportModel {
     std::filesystem::path path;
     bool height = true, orm = true;        ///< maps besides the base colour
@@ -172,6 +176,7 @@ struct AttachToProject {
     std::string kind;
     io::Attachment attachment;
 };
+/// Removes an attachment of the project.
 struct DetachFromProject {
     std::string kind, name;
 };
@@ -179,6 +184,7 @@ struct DetachFromProject {
 struct TakeSnapshot {
     std::string name;
 };
+/// Gives a snapshot another name.
 struct RenameSnapshot {
     std::string id, name;
 };

@@ -97,6 +97,7 @@ struct FileStatus {
     bool viewing = false;     ///< read-only, because another program works on the project
 };
 
+/// What the paint thread reports of its state. The newest replaces those before.
 struct PaintStatus {
     std::shared_ptr<const mesh::SurfaceQuery> surface;  ///< of the visible parts; null before the first update
     DocumentStatus document;
@@ -128,6 +129,7 @@ struct PaintEvents {
     bool from_outside = false;  ///< another program contributed to the change
 };
 
+/// One message of the paint thread: what happened once, and its state.
 struct Update {
     PaintEvents events;
     PaintStatus status;

@@ -26,6 +26,7 @@ struct EqualParts {
     bool any() const { return 3 * kept.size() < source.size(); }
 };
 
+/// Returns the kinds of parts. `twin` [3 n_triangles] as in `CutMesh`.
 EqualParts find_equal_parts(const mesh::TriangleMesh& mesh, std::span<const std::uint32_t> twin);
 
 /// Returns the mesh of the kept parts: positions, triangles and neighbours only.

@@ -20,8 +20,10 @@ struct Reference {
     double area = 0;                 ///< of the triangle
 };
 
+/// Returns triangle `t` in its own plane, at least `min_height` of its longest edge high.
 Reference reference_triangle(const ChartMesh& chart, std::size_t t, double min_height = kMinHeight);
 
+/// Returns the area of a triangle in the plane of `uv`, positive where it is counter-clockwise.
 inline double signed_area(const std::array<std::uint32_t, 3>& f, const std::vector<Vec2>& uv) {
     const Vec2 a = uv[f[1]] - uv[f[0]], b = uv[f[2]] - uv[f[0]];
     return 0.5 * (a.x * b.y - a.y * b.x);

@@ -33,6 +33,7 @@ struct Shape {
     double extent = 0;  // longer side of the rectangle
 };
 
+/// Returns the shape of a closed simple polygon, which must outlive it.
 Shape make_shape(const std::vector<Vec2>& border);
 
 /// All cells of side `cell` texels that the shape touches when it is turned by `angle`

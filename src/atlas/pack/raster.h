@@ -14,6 +14,7 @@ namespace tuft::atlas {
 
 inline constexpr double kUvGrid = 16777216;  ///< grid steps per unit of UV, 2²⁴
 
+/// Returns true when both coordinates are finite.
 inline bool is_finite(const Vec2f& uv) {
     return std::isfinite(uv.x) && std::isfinite(uv.y);
 }

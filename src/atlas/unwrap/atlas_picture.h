@@ -15,6 +15,7 @@ struct AtlasPicture {
     std::vector<std::uint8_t> rgb;        ///< [3 width height], top row first
 };
 
+/// Size of the picture of an atlas.
 struct AtlasPictureOptions {
     std::uint32_t side = 1024;  ///< pixels along each of the two squares
 };

@@ -9,6 +9,7 @@
 /// UVs of a model's file as an atlas. Called by `unwrap`.
 namespace tuft::atlas {
 
+/// UVs of a file as an atlas.
 struct FileUvs {
     Atlas atlas;
     Message fault;  ///< why they cannot serve as an atlas; empty when they can

@@ -32,6 +32,7 @@ namespace tuft::brush {
 /// [Wang2020], 1.4, 0.5 and 0.7 mm with hair of 30 mm, in proportion to the hair's length.
 SweepRow ruler_repeatability(double length);
 
+/// Options of `calibrate`.
 struct CalibrateOptions {
     std::optional<SweepRow> repeatability;  ///< metres, > 0; default: `ruler_repeatability`
     int max_evaluations = 1500;             ///< sweeps of all depths; at least 60 are made
@@ -46,6 +47,7 @@ struct FittedConstant {
     double determined = 0;     ///< 1 − σ/σ_prior: 0 the data say nothing, 1 they say all
 };
 
+/// Result of `calibrate`.
 struct Calibration {
     Preset preset;
     SweepRow rms;          ///< root mean square residual of each column, metres; NaN where not measured (depth unused)

@@ -33,6 +33,7 @@
 /// bend costs; what ρ takes away between steps is in no term, so the balance with the hand's work is not kept.
 namespace tuft::brush {
 
+/// Constants of the kinematic chain.
 struct ChainOptions {
     double exponent = 3;            ///< m [p]
     double change_weight = 0.2;     ///< of the energy of the change of bend per step [X]

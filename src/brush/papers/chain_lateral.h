@@ -18,6 +18,7 @@
 /// Source: Chu and Tai 2002, 4.1.1, 4.1.2, 4.2.2.
 namespace tuft::brush {
 
+/// Side nodes along one flank of the tuft, and what pulls on them.
 struct LateralChain {
     std::vector<double> at;     ///< m, arc length, strictly rising; the first node is held at its rest
     std::vector<double> rest;   ///< m

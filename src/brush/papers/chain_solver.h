@@ -27,6 +27,7 @@
 /// Sources: Chu and Tai 2002, 4.2.2–4.2.4; Van Laerhoven and Van Reeth 2007, equations (2)–(4).
 namespace tuft::brush {
 
+/// Segments and joints of a spine. Lengths are in units of its length L.
 struct ChainSpine {
     std::vector<double> length;       ///< [n] of the segments, sum 1
     std::vector<double> coefficient;  ///< [n] κ_j of the joints
@@ -48,6 +49,7 @@ struct ChainContact {
     Vec3 normal{0, 0, 1};     ///< of the surface there; d is normal to it
 };
 
+/// Friction of the surface.
 struct ChainFriction {
     double coefficient = 0;  ///< μ
     double grain = 0.5;      ///< κ_f
@@ -64,6 +66,7 @@ struct ChainPore {
     double reach = 0;         ///< l_p
 };
 
+/// One solve: the spine at rest, its state before, the planes that it meets.
 struct ChainProblem {
     Vec3 root{0};
     Mat3 frame{1};                          ///< at the root; its third column is the ferrule's axis
@@ -77,6 +80,7 @@ struct ChainProblem {
     int max_iterations = 60;
 };
 
+/// Result of one solve.
 struct ChainSolution {
     std::vector<Vec2> bend;        ///< [n] w
     std::vector<Vec3> node;        ///< [n+1]

@@ -45,6 +45,7 @@ struct HairRow {
     std::vector<double> radius;  ///< [n+1] metres, r(t)
 };
 
+/// Return the nodes along the hair of a preset, and the constants of its macro.
 HairRow make_hair_row(const Preset& preset);
 MacroLaw make_macro_law(const Preset& preset);
 
@@ -59,6 +60,7 @@ struct MacroRest {
     bool round() const { return axes.l == axes.s; }
 };
 
+/// A hair macro and its state.
 struct HairMacro {
     MacroRest rest;
     CurveSpline skeleton{};       ///< K, metres, world

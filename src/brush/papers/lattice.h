@@ -18,6 +18,7 @@
 /// Source: Van Laerhoven and Van Reeth 2007, 3.3 (Sederberg and Parry 1986).
 namespace tuft::brush {
 
+/// Control points that two spines drive.
 struct Lattice {
     int degree = 0;                                           ///< K
     std::vector<std::array<std::array<Vec3, 2>, 2>> control;  ///< [K+1][i][j], metres, root first

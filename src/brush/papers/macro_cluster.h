@@ -18,6 +18,7 @@ struct Mirror {
     Vec2 normal{1, 0};  ///< unit, across the axis, ferrule frame
 };
 
+/// A hair macro and its mirrored copies.
 struct MacroCluster {
     HairMacro primitive;
     std::vector<Mirror> copies;

@@ -32,6 +32,7 @@ struct SkeletonLaw {
     std::span<const Vec3> trunk = {};
 };
 
+/// Skeleton after it met the surface.
 struct BentSkeleton {
     std::vector<Vec3> nodes;  ///< K_n before the fit; no node is below its half space
     bool touching = false;    ///< some node of K_o was below

@@ -29,6 +29,7 @@ struct Ellipse {
 ///     S ← min(S, max(z, least)).
 double pressed_axis(double s, double z, double least);
 
+/// Constants of the inner stress.
 struct StressLaw {
     double compressed = 1;   ///< k1, where the profile became narrower [X]
     double stretched = 1;    ///< k2, where it became wider [X]

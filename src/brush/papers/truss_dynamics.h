@@ -27,6 +27,7 @@ namespace tuft::brush::truss {
 
 inline constexpr double kMostStretch = 0.05;  ///< of a spring's rest length [X]; the print has no number
 
+/// Spring between two particles.
 struct Spring {
     int from = 0, to = 0;  ///< particles
     double stiffness = 0;  ///< k, N/m

@@ -8,6 +8,7 @@
 /// the undeformed point, l_p the length of the head along the surface normal, θ the angle between normal and head.
 namespace tuft::brush::truss {
 
+/// Force on the hand by depth.
 struct ForceLaw {
     double bristles = 0.5;  ///< k1, N, when the handle first hits the surface
     double handle = 20;     ///< k2, N, further force per head length beyond

@@ -27,6 +27,7 @@ struct SegmentShear {
     Vec3 half_distance{0};  ///< ½ d = ∂u/∂t of both
 };
 
+/// A pair of neighbouring rods with what one pass holds constant. m segments couple them.
 struct FrozenPair {
     const CoupledPair* pair = nullptr;
     int nodes = 0;              ///< m + 1

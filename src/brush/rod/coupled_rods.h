@@ -94,6 +94,7 @@ struct PairState {
     Recycled<double> faces;     ///< f
 };
 
+/// Result of a solve of coupled rods.
 struct CoupledResult {
     Recycled<Result> rods;  ///< forces and energies of each; `converged`, iterations and passes of all together
     Recycled<PairState> pairs;

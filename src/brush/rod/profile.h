@@ -28,6 +28,7 @@ double compliance(const Profile& p, double xi0, double xi1);
 /// `tip_ratio` / n, 0 < tip_ratio <= 1. Brush presets use 0.25 + 0.75 hardness.
 std::vector<double> spine_segments(int n, double tip_ratio);
 
+/// Linear deflection at one place of an end-loaded cantilever.
 struct SmallDeflection {
     double w = 0;       ///< deflection, in P L³/B0
     double slope = 0;   ///< dw/dx, in P L²/B0

@@ -11,6 +11,7 @@
 /// Energy Π of the rod and its derivatives, for frozen friction and multipliers. Internal to the rod solver.
 namespace tuft::brush::rod {
 
+/// Returns the clamp's frame: tangent, side and their cross product as columns.
 inline Mat3 clamp_frame(const Clamp& c) {
     return {c.tangent, c.side, glm::cross(c.tangent, c.side)};
 }
@@ -99,6 +100,7 @@ struct Patch {
     double along2 = 1, across2 = 1;  ///< factors of friction, squared
     double reach = 0;                ///< greatest height at which a point has a force
 };
+/// Node in the frame of its contact plane. Units of L.
 struct PatchPoint {
     double height = 0;  ///< of the plane along the patch's normal, from the clamp
     Vec2 anchor{0};     ///< along the hair and across, from the clamp
@@ -137,6 +139,7 @@ struct AngleFunctions {
     double phi = 1, chi = 0, dchi = 0;
 };
 
+/// Bend of a joint, its moment and stiffness. Units of B0/L.
 struct JointForce {
     Vec2 bend{0};                      ///< w: log of the outer tangent at the inner one
     AngleFunctions angle;              ///< of its angle
@@ -170,6 +173,7 @@ void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out);
 /// Returns Π alone. The rest of `out` is undefined afterwards.
 double value_of(const Frozen& frozen, const Shape& shape, Evaluation& out);
 
+/// A 2 × 2 matrix by rows, not symmetric.
 struct Mat2 {
     double m[2][2] = {{0, 0}, {0, 0}};
 };

@@ -18,6 +18,7 @@ inline NormalForce ramp(double k, double x, double onset) {
     return {0.5 * k * y * y + k * onset * onset / 24, k * y, k};
 }
 
+/// Returns the normal force of a node that is `depth` below its plane.
 inline NormalForce normal_force(const Law& law, double weight, double radius, double depth, double multiplier) {
     if (law.hard) {
         const double k = law.stiffness * weight, force = multiplier + k * depth;

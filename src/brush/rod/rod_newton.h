@@ -27,6 +27,7 @@ struct Workspace {
     Eigen::SelfAdjointEigenSolver<DenseMatrix> eigen;
 };
 
+/// Result of a Newton solve.
 struct NewtonResult {
     bool converged = false;
     bool moved = false;  ///< a step was taken

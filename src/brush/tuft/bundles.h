@@ -25,6 +25,7 @@ struct HairStrip {
     double from = -1, to = 1;
 };
 
+/// All bundles of a tuft, and its drawn bristles.
 struct Bundles {
     std::uint64_t seed = 0;
     /// Of a wide ferrule, from −x to +x. Places are then over its half-width and half-thickness, x along the broad

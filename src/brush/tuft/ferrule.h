@@ -26,6 +26,7 @@
 /// Ferrule frame: origin in the middle of the mouth, x along the broad side, −z along the hair. Metres, radians.
 namespace tuft::brush {
 
+/// Place and share of one spine in its ferrule, at rest.
 struct FerruleSpine {
     double x = 0;              ///< m, place on the broad side
     double y = 0;              ///< m, place across it

@@ -25,6 +25,7 @@ namespace tuft::brush {
 
 inline constexpr int kWallPasses = 6, kDragPasses = 12;
 
+/// Stiffness of the springs between spine and side nodes.
 struct LateralSprings {
     double stretch = 1e4;    ///< κ, N/m²: force per length of tuft per displacement
     double bend = 1e4;       ///< κ0 of the bend springs

@@ -48,6 +48,7 @@ struct LatticePlace {
     Vec3 stu{0};
 };
 
+/// Lattice of a bent tuft: a tricubic Bernstein cell for each segment of the spine.
 class SpineLattice {
   public:
     /// Control points of one cell, P[i][j][k].

@@ -9,6 +9,7 @@
 /// One spine of the tuft between the ferrule and its contact planes. Internal to `brush/tuft`.
 namespace tuft::brush {
 
+/// One spine after a solve.
 struct Solved {
     rod::Result result;  ///< in units of L and B0
     Branch branch;
@@ -29,6 +30,7 @@ struct Neighbour {
 };
 using Neighbours = Recycled<Neighbour>;
 
+/// Returns the clamp of a spine in the middle of the ferrule.
 rod::Clamp clamp_of(const Preset& preset, const Pose& pose);
 
 /// Contact law in units of L and B0 of one of `share` equal spines, for a solve over `dt` seconds.

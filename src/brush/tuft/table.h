@@ -23,12 +23,14 @@ struct TableRow {
     std::vector<double> moments;  ///< m_i, N·m
 };
 
+/// Shapes of one tuft, by root moment.
 struct QueryTable {
     double length = 0;           ///< m
     double stiffness = 0;        ///< B0, N·m²
     std::vector<TableRow> rows;  ///< rising moment, first row straight
 };
 
+/// Returns the table of a preset, with `rows` rows.
 QueryTable make_table(const Preset& preset, int rows = 64);
 
 /// Returns the shape at a moment, clamped to the table's range; cubic between rows.

@@ -15,6 +15,7 @@ Recycled<Vec3> node_tangents(const rod::Memory& memory);
 /// Returns the clamp's side carried along the spine to its nodes by parallel transport, unit, root first.
 Recycled<Vec3> broad_axes(const rod::Memory& memory, std::span<const Vec3> tangents);
 
+/// What `make_sections` takes of one spine.
 struct SectionInput {
     const Preset& preset;
     const Spine& spine;
@@ -31,6 +32,7 @@ struct SectionInput {
     bool wide() const { return !spine.rest_section.empty(); }
 };
 
+/// Result of `make_sections`.
 struct SectionOutput {
     Recycled<Section> sections;                  ///< tip first
     Vec3 wide{1, 0, 0};                          ///< e at the root, ferrule frame

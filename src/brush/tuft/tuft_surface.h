@@ -11,11 +11,13 @@
 /// The tuft's surface as triangles. `render`, `app` and the calibration draw it or bound it.
 namespace tuft::brush {
 
+/// Fineness of the triangles.
 struct TuftSurfaceOptions {
     int points_per_ring = 24;
     int rings_between_nodes = 2;  ///< spline-interpolated rings added between two sections
 };
 
+/// Triangles of the bent tuft.
 struct TuftSurface {
     std::vector<Vec3> positions;           ///< metres, world
     std::vector<Vec3> normals;             ///< unit, outward, one per position

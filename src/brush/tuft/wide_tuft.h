@@ -43,6 +43,7 @@ rod::CouplingLaw coupling_of(const Preset& preset, double wetness);
 /// √((a n·x)² + (b n·y)² + (min(a, b) n·t)²) with x, y the ferrule's axes carried along the spine to the node.
 double rest_reach(const Spine& spine, std::size_t i, const Vec3& x, const Vec3& t, const Vec3& n);
 
+/// All spines of a ferrule after a solve.
 struct SolvedSpines {
     Recycled<Solved> spines;
     double coupling_energy = 0, dissipation = 0;  ///< units of B0/L; the latter of all rods and pairs

@@ -19,6 +19,7 @@ struct ManualOption {
     bool repeats = false;  ///< takes any number of values
 };
 
+/// A command with its options and subcommands.
 struct ManualCommand {
     std::string name;  ///< "tuft", "paint"
     std::string text;  ///< one phrase
@@ -32,6 +33,7 @@ struct ManualSection {
     std::string title, text;
 };
 
+/// All that manual pages and completions are made of.
 struct Manual {
     ManualCommand program;
     std::string version, date;            ///< of the program, "0.1.0", "2026-11-25"

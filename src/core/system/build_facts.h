@@ -9,6 +9,7 @@
 /// fills the data when it configures the build.
 namespace tuft {
 
+/// How this program was built.
 struct BuildFacts {
     std::string version;     ///< of tuft, "0.1.0"
     std::string released;    ///< day of this version, "2026-11-25"
@@ -19,6 +20,7 @@ struct BuildFacts {
     std::vector<std::pair<std::string, std::string>> libraries;  ///< name and version at compile time
 };
 
+/// Returns the facts of this program.
 const BuildFacts& build_facts();
 
 }  // namespace tuft

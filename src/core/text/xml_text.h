@@ -3,6 +3,8 @@
 #include <string>
 #include <string_view>
 
+/// \file
+/// Text of XML files. Called by all writers of SVG, InkML and HTML.
 namespace tuft {
 
 /// Returns `text` for use in XML, as the content of an element or an attribute: the characters &, <, > and " as

@@ -72,6 +72,7 @@ struct Ends {
     Vec2 front{0}, rear{0};
 };
 
+/// Orders of points by one coordinate.
 inline bool by_y(const Vec2& a, const Vec2& b) {
     return a.y < b.y;
 }

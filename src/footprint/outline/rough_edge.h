@@ -43,6 +43,7 @@ struct EdgeGrain {
     double length = 1e-4;  ///< l, metres
 };
 
+/// Noise of the edge of still ink.
 struct RoughEdge {
     EdgeHair hair;
     EdgeGrain grain;

@@ -20,6 +20,7 @@ namespace tuft::footprint {
 /// Polygon in the stamp's (u, v), metres, counter-clockwise outside, clockwise round a hole.
 using Polygon = Recycled<Vec2>;
 
+/// Ink on a tuft that carries a shape.
 struct ShapeOptions {
     double film = 0.1e-3;  ///< metres, ink on the skin or the hair
     double wetness = 1;    ///< 0–1: ink spans the rims of pores and stands out beside hairs

@@ -42,6 +42,7 @@ class Reader {
 /// Names of the files in models/`folder`, sorted.
 std::vector<std::string> list(const char* folder);
 
+/// Text of a preset, the file that it comes from, and its name.
 struct Text {
     std::string text, source, name;
 };

@@ -30,6 +30,7 @@ struct ColourPatch {
     double area = 0;      ///< any unit
 };
 
+/// The filament nearest to a colour.
 struct FilamentChoice {
     std::size_t filament = 0;
     double delta_e = 0;  ///< mean CIEDE2000 over the patches, weighted by area

@@ -70,6 +70,7 @@ struct Active {
     bool wet() const { return outcome.most_w + outcome.most_s > 0; }
 };
 
+/// The tiles with wet ink, and what a step needs of each.
 struct TileList {
     const atlas::TexelMap& map;
     atlas::SeamLinks seams;                           ///< scaled: what goes over seams stays within what a step allows

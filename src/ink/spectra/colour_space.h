@@ -24,10 +24,12 @@ enum class ColourSpace {
 
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
+/// CIE 1931 chromaticity.
 struct Chromaticity {
     double x = 0, y = 0;
 };
 
+/// Name, primaries and white of a colour space.
 struct ColourSpaceData {
     std::string_view name;  ///< srgb, display-p3, acescg
     std::string_view title;
@@ -35,6 +37,7 @@ struct ColourSpaceData {
     bool linear = false;  ///< stored values are linear; else by the curve of sRGB
 };
 
+/// Returns the data of a space.
 const ColourSpaceData& data_of(ColourSpace space);
 /// The space of that name, or nothing.
 std::optional<ColourSpace> colour_space_named(std::string_view name);

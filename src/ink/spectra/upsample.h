@@ -6,6 +6,7 @@
 /// Spectra of pigments that are known in red, green and blue only. Called by pigments.h.
 namespace tuft::ink {
 
+/// Absorption and scattering per film unit, by wavelength.
 struct Curves {
     Spectrum k{}, s{};
 };

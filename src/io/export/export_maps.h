@@ -24,6 +24,7 @@ ImageOptions linear_options(ink::ColourSpace space);
 /// Names of the maps that `write_map` writes: base-colour, normal, height, roughness, pigments, layers, palette.
 const std::vector<std::string>& map_names();
 
+/// Options of written maps.
 struct MapOptions {
     int bits = 8;          ///< of base-colour in PNG, 8 or 16
     bool profile = false;  ///< stores an ICC profile in base-colour.png, also of sRGB

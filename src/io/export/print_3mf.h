@@ -23,6 +23,7 @@ struct PaintedTriangles {
     double mean_delta_e = 0;                              ///< CIEDE2000 over the surface
 };
 
+/// Options of a model painted in filaments.
 struct PaintOptions {
     std::vector<ink::Filament> filaments;  ///< 1 to `kMostFilaments`; the first is the core of the print
     double wall = 0.45e-3;                 ///< metres of the painted wall

@@ -13,6 +13,7 @@
 /// installed. Called by `tuft film`.
 namespace tuft::io {
 
+/// Size and rate of a film.
 struct FilmFormat {
     int width = 0, height = 0;  ///< pixels
     double frames_per_second = 25;

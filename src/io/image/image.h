@@ -53,6 +53,7 @@ PixelView view_of(int width, int height, int channels, const T* pixels) {
             .row_bytes = static_cast<std::ptrdiff_t>(sizeof(T)) * width * channels};
 }
 
+/// Returns a view of the whole image, which must outlive it.
 template <class T>
 PixelView view_of(const Image<T>& image) {
     return view_of(image.width, image.height, image.channels, image.pixels.data());

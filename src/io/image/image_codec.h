@@ -13,12 +13,14 @@ namespace tuft::io {
 
 enum class ImageFormat { png, exr, jpeg, tiff };
 
+/// Pixels to be encoded.
 struct EncodeRequest {
     ImageFormat format = ImageFormat::png;
     PixelView pixels;
     const ImageOptions* options = nullptr;
 };
 
+/// Bytes of a file to be decoded, and limits of the result.
 struct DecodeRequest {
     ImageFormat format = ImageFormat::png;
     const void* bytes = nullptr;
@@ -28,6 +30,7 @@ struct DecodeRequest {
     std::size_t max_bytes = 0;  ///< of the pixels as wanted
 };
 
+/// Pixels of a decoded file.
 struct DecodedImage {
     int width = 0, height = 0, channels = 0;
     std::vector<std::string> channel_names;

@@ -14,6 +14,7 @@ class Model;
 /// only. Any thread.
 namespace tuft::io {
 
+/// A glTF file in memory.
 struct GltfFile {
     std::string json;                                  ///< as stored in the file
     std::unique_ptr<tinygltf::Model> model;            ///< the JSON, parsed, with its buffers; never null after opening

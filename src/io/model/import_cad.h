@@ -21,6 +21,7 @@ inline constexpr std::array kCadFaults{kNotCad, kNoCadFaces, kTooFineChord, kToo
 /// The default chord tolerance as a part of the diagonal of the model's bounds.
 inline constexpr double kChordPart = 2e-4;
 
+/// How a CAD file becomes triangles.
 struct CadRequest {
     double chord = 0;       ///< metres between surface and triangles, about; 0: `kChordPart` of the diagonal
     bool by_faces = false;  ///< a part for each CAD face; else one for each body and colour

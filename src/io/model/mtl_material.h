@@ -20,6 +20,7 @@ std::string picture_name(std::string line);
 /// Returns the texture index of the picture with that name; −1 where it is missing or no picture.
 using TextureOf = std::function<int(const std::string& name)>;
 
+/// A material of MTL in the terms of glTF.
 struct MtlAsGltf {
     nlohmann::json material;    ///< of glTF
     nlohmann::json statements;  ///< as `SceneBuilder::keep_statements` takes them

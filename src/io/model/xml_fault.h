@@ -10,6 +10,7 @@ struct xml_parse_result;
 /// Why pugixml could not read a text, as a message that has a translation.
 namespace tuft::io {
 
+/// Returns what is wrong with an XML file.
 Message xml_fault(const pugi::xml_parse_result& result);
 
 }  // namespace tuft::io

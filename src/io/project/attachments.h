@@ -18,6 +18,7 @@ inline constexpr const char* kSnapshots = "snapshot";    ///< kind: `about` is J
 inline constexpr std::size_t kMostAttachments = 200;     ///< of a kind
 inline constexpr std::size_t kMostAttachmentBytes = std::size_t{256} << 20;  ///< of one
 
+/// Named bytes in a project.
 struct Attachment {
     std::string name;   ///< unique within its kind; attachments of a kind are sorted by name
     std::string about;  ///< a line of text, at most 64 KiB

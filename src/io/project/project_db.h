@@ -48,6 +48,7 @@ bool has_array(SQLite::Database& db, const std::filesystem::path& path, const Ar
 void get_array_bytes(SQLite::Database& db, const std::filesystem::path& path, const ArrayKey& key, void* out,
                      const ArraySize& size, const Packing& packing);
 
+/// Stores an array of plain values under the names of its owner and its own.
 template <class T>
 void put_array(SQLite::Database& db, const char* owner, const char* name, const std::vector<T>& values,
                const Packing& packing) {

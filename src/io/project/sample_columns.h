@@ -15,6 +15,7 @@ namespace tuft::io {
 inline constexpr std::size_t kSampleColumns = 11;  ///< time, position, pressure, tilt, rotation
 inline constexpr std::size_t kRolledColumns = 12;  ///< and the roll, where a sample has one
 
+/// Returns true when some sample has a roll.
 inline bool has_roll(std::span<const stroke::StrokeSample> samples) {
     for (const stroke::StrokeSample& s : samples)
         if (s.roll != 0) return true;

@@ -8,6 +8,7 @@
 /// Decal sheets of a document. Called by `tuft decals` and by the studio; sheet_files.h writes the result.
 namespace tuft::io {
 
+/// What `tuft decals` and the studio ask of a sheet.
 struct SheetRequest {
     std::uint32_t mask = 0;  ///< id of the mask whose areas are cut out, painted or not; 0: all that is painted
     bool plates = false;     ///< one plate for each pigment instead of colours

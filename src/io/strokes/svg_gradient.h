@@ -11,6 +11,7 @@
 /// Gradients of SVG drawings (SVG 1.1, 13.2). Called by svg_scene.cpp. Any thread.
 namespace tuft::io {
 
+/// Stop of a gradient.
 struct SvgStop {
     double at = 0;  ///< 0–1, ascending
     SvgColour colour;

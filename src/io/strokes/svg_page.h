@@ -36,6 +36,7 @@ SvgPage svg_page(const pugi::xml_node& svg, const std::string& source);
 struct SvgViewport {
     Vec2 corner{0}, size{0};
 };
+/// Frame of an inner drawing.
 struct SvgFraming {
     SvgMatrix matrix{1};  ///< from the inner drawing to the user space of the viewport
     Vec2 view{0};         ///< size of the inner page, its units

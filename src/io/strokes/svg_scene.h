@@ -45,6 +45,7 @@ struct SvgShape {
     std::string upright;    ///< the group that a mirrored copy keeps readable; empty: none
 };
 
+/// Shapes of a drawing, with clip paths and masks.
 struct SvgScene {
     std::vector<SvgShape> shapes;
     std::vector<Shape> clips;  ///< metres
@@ -54,6 +55,7 @@ struct SvgScene {
     SvgLosses losses;
 };
 
+/// Options of reading a drawing.
 struct SvgSceneOptions {
     /// For lines of a brush: no clip paths, masks, patterns, markers and frames of inner drawings; they are counted as
     /// losses, as are opacities and gradients.

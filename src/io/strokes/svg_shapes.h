@@ -42,6 +42,7 @@ class SvgReader {
     const std::string& source_;
 };
 
+/// Return a translation and a scaling.
 SvgMatrix svg_translation(double x, double y);
 SvgMatrix svg_scaling(double x, double y);
 /// Returns the product of a list of transforms. Throws `Error` for an unknown one.

@@ -17,6 +17,7 @@
 /// 0.006 s, 1.18 s to 0.051 s for 20 origins each).
 namespace tuft::mesh {
 
+/// Geodesics from one point to all points within a radius.
 class ExactGeodesics {
   public:
     /// Computes the geodesics from `origin`, a point of `triangle`, to all points within `radius` metres. Returns

@@ -16,6 +16,7 @@ enum class PlyType : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUin
 std::size_t size_of(PlyType type);
 bool is_real(PlyType type);
 
+/// Property of a row.
 struct PlyProperty {
     std::string name;  ///< in lower case
     bool is_list = false;
@@ -23,6 +24,7 @@ struct PlyProperty {
     PlyType type = PlyType::kFloat32;
 };
 
+/// Rows of one kind.
 struct PlyElement {
     std::string name;  ///< in lower case
     std::uint64_t count = 0;
@@ -36,6 +38,7 @@ struct PlyElement {
     int find(std::initializer_list<const char*> names) const;
 };
 
+/// Header of a PLY file.
 struct PlyHeader {
     PlyFormat format = PlyFormat::kAscii;
     std::vector<PlyElement> elements;

@@ -17,6 +17,7 @@
 /// `build_surface` (repair.h) repairs it.
 namespace tuft::mesh {
 
+/// Content of a mesh file: polygons over shared points.
 struct PolygonSoup {
     std::vector<Vec3> points;                  ///< in the file's unit
     std::vector<std::uint32_t> corners;        ///< point index per polygon corner, all polygons in a row

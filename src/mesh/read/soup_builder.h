@@ -26,6 +26,7 @@ struct Tally {
     Message text(const char* what, const char* unit) const;
 };
 
+/// Builds a `PolygonSoup` from what a reader finds. Drops what cannot be used and reports it.
 class SoupBuilder {
   public:
     SoupBuilder(std::string file, const char* place_unit) : file_(std::move(file)), unit_(place_unit) {}

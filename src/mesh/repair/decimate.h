@@ -8,6 +8,7 @@
 /// the full model.
 namespace tuft::mesh {
 
+/// Goals of `decimate`.
 struct DecimateOptions {
     std::size_t n_triangles = 0;  ///< most triangles that are wanted; 0: by `error` alone
     double error = 0;             ///< metres between both surfaces, about; 0: by `n_triangles` alone

@@ -48,6 +48,7 @@ void keep_triangles(RawMesh& mesh, const std::vector<bool>& keep);
 /// Marks in `at_split_edge` the vertices of half-edge h: its edge was split.
 void mark_opened(RawMesh& mesh, std::uint32_t h);
 
+/// What pairing changed.
 struct PairingReport {
     std::size_t duplicates_dropped = 0;
     std::size_t edges_split = 0;  ///< shared by three or more triangles of positive area
@@ -60,6 +61,7 @@ struct PairingReport {
 /// become border.
 PairingReport pair_half_edges(RawMesh& mesh);
 
+/// What orientation changed.
 struct OrientationReport {
     std::size_t faces_flipped = 0;  ///< of closed components, and against the majority of open ones
     std::size_t parts_turned = 0;   ///< open components that were inside out

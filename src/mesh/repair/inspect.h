@@ -10,6 +10,7 @@
 /// Figures about a model for `tuft inspect` and the window's model dialog: sizes, likely unit, defects.
 namespace tuft::mesh {
 
+/// The unit that a file without one probably has.
 struct UnitGuess {
     std::string unit;  ///< "mm", "cm", "m" or "in"
     double metres_per_unit = 1e-3;

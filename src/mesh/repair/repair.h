@@ -25,6 +25,7 @@ enum class OpenSides {
 /// Words of the command line: outward, file, turned. Back throws `Error` for any other word.
 OpenSides open_sides_of(const std::string& name);
 
+/// Options of `build_surface`.
 struct RepairOptions {
     double metres_per_unit = 1e-3;                      ///< the file's unit; millimetres by default
     bool y_up = false;                                  ///< y is up in the file: points are rotated to (x, −z, y)
@@ -57,6 +58,7 @@ struct RepairReport {
     std::vector<Message> warnings;  ///< from the reader and from the repair, one line each
 };
 
+/// Result of `build_surface`.
 struct Surface {
     TriangleMesh mesh;
     RepairReport report;

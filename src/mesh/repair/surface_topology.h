@@ -10,6 +10,7 @@
 /// The repaired surface in OpenMesh's half-edge structure. Used by `build_surface` only.
 namespace tuft::mesh {
 
+/// Half-edges of a repaired mesh, for its last corrections and its counts.
 class SurfaceTopology {
   public:
     /// Preconditions: the mesh is manifold and oriented, `opposite` agrees with its vertex numbers, and every

@@ -16,6 +16,7 @@
 /// comes out too dark. It has no line of changing width. It brings 20 libraries.
 namespace tuft::render {
 
+/// Picture of a brush in work.
 struct BrushCanvas {
     int width = 0, height = 0;
     std::vector<float> rgb;  ///< linear, [height * width * 3], row 0 on top

@@ -20,6 +20,7 @@ struct BrushView {
     Vec3 toward() const { return glm::cross(right, up); }  ///< the viewer
 };
 
+/// How a tuft is drawn.
 struct TuftAppearance {
     bool dry = false;   ///< dry hair: no point, open marks
     double ground = 0;  ///< metres, height of the sheet; hair pressed below it is drawn on it

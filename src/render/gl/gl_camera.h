@@ -18,6 +18,7 @@ struct GlCamera {
     bool operator==(const GlCamera&) const = default;
 };
 
+/// Ray of the camera.
 struct GlRay {
     Vec3 origin{0};           ///< metres, world
     Vec3 direction{0, 1, 0};  ///< unit

@@ -59,6 +59,7 @@ struct MapPixels {
     std::array<std::vector<std::array<std::uint8_t, 4>>, kTextureLevels> levels;
 };
 
+/// How the model is drawn.
 struct DrawOptions {
     Shading shading = Shading::glaze;
     float roughness = 0.1f;   ///< of the coat

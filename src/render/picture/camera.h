@@ -23,6 +23,7 @@ struct View {
     bool operator==(const View&) const = default;
 };
 
+/// Camera of a picture, without lens: a point and a plane.
 struct Camera {
     Vec3 eye{0};                                         ///< metres
     Vec3 right{1, 0, 0}, up{0, 0, 1}, forward{0, 1, 0};  ///< unit, orthogonal

@@ -31,11 +31,13 @@ struct Light {
     Vec3f direct{0}, around{0};
 };
 
+/// Rays of one pixel, by what they look for.
 struct LightSamples {
     std::array<int, 3> boxes{8, 3, 3};
     int around = 12;
     int on_floor = 4;  ///< times `boxes` on the floor, whose even grey shows most
 };
+/// Shares `total` rays among the kinds.
 LightSamples share_samples(int total);
 
 /// A pixel and the seed of the picture: together they fix the random numbers of the pixel.
@@ -60,6 +62,7 @@ struct LightBuffer {
     bool find(float x, float y, const ViewHit& at, float pixel_size, Light& light) const;
 };
 
+/// Options of `fill_light_buffer`.
 struct LightBufferOptions {
     LightSamples samples;
     std::uint64_t seed = 1;
@@ -67,6 +70,7 @@ struct LightBufferOptions {
     ProgressFn progress;
 };
 
+/// Samples the light of each pixel, or of every `step`-th one along both axes. The same for any number of threads.
 LightBuffer fill_light_buffer(const Scene& scene, const LightCache& cache, const Camera& camera,
                               const LightBufferOptions& options);
 

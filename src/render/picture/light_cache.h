@@ -28,6 +28,7 @@ Vec3f face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle);
 Vec3f direct_light(const Scene& scene, const Vec3f& p, const Vec3f& n, const std::array<int, 3>& samples,
                    const Vec2f& shift);
 
+/// Light that surfaces throw onto each other: radiosity on one patch for each voxel and facing direction.
 class LightCache {
   public:
     /// What stays of the work: nothing more than the solution, or what `relight` needs (16 bytes for each of some 60

@@ -36,6 +36,7 @@ struct TextureMaps {
     std::span<const float> height{};                                  ///< metres of ink above the surface
 };
 
+/// Material of the model.
 struct Appearance {
     Finish finish = Finish::porcelain;
     std::optional<Vec3f> body_colour;  ///< linear RGB; by default that of the finish
@@ -48,6 +49,7 @@ enum class Lights {
     raking,  ///< one small lamp from the side, which shows the relief of the ink with its shadows
 };
 
+/// Size, view and quality of a picture.
 struct PictureOptions {
     int width = 1280, height = 720;  ///< pixels
     View view;

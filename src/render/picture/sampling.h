@@ -47,6 +47,7 @@ inline Vec2f lattice_shift(int x, int y, std::uint64_t seed, std::uint64_t k) {
     return {static_cast<float>(u - std::floor(u)), static_cast<float>(v - std::floor(v))};
 }
 
+/// Returns the fractional parts of both coordinates.
 inline Vec2f wrap(const Vec2f& p) {
     return p - glm::floor(p);
 }

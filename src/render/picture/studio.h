@@ -19,6 +19,7 @@ struct SoftBox {
     Vec3f radiance{1};
 };
 
+/// Lamps, dome and floor about the object.
 struct Studio {
     std::array<SoftBox, 3> boxes;  ///< key, fill, rim
     Vec3f centre{0};               ///< of the object

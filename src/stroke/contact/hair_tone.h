@@ -19,6 +19,7 @@
 /// texel grows from half of a strand to 1.25 of it. A profile within 1 % of its mean is even: nobody sees it.
 namespace tuft::stroke {
 
+/// Profile of the film across the hair, computed anew as the hand goes on.
 class HairTone {
   public:
     /// Computes the profile anew where the hand has gone 0.5 mm since the last time. `points`: of the touching hair,

@@ -25,6 +25,7 @@
 /// `Document`; there is no second path. `samples/hello` is the smallest program that does.
 namespace tuft::stroke {
 
+/// Options of `Document`.
 struct DocumentOptions {
     std::string substrate = "porcelain";              ///< name of a shipped one; `Document::use` takes any other
     std::size_t undo_bytes = std::size_t{256} << 20;  ///< of retained tiles; older entries are undone by replay

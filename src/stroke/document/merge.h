@@ -19,10 +19,12 @@ struct EntryMark {
 
     bool operator==(const EntryMark&) const = default;
 };
+/// Return the marks of entries. `set_hidden` changes a mark as hiding its entry does.
 EntryMark mark_of(const JournalEntry& entry);
 void set_hidden(EntryMark& mark, bool hidden);
 std::vector<EntryMark> marks_of(std::span<const JournalEntry> entries);
 
+/// Result of `merge_journals`.
 struct MergedJournal {
     std::vector<JournalEntry> entries;
     std::size_t from_theirs = 0;  ///< number of leading entries that are all of theirs, unchanged; 0 if `altered`

@@ -30,6 +30,7 @@ struct BiasPiece {
     std::array<Vec2, 4> tilt_change{};                 ///< radians, intended minus written
 };
 
+/// What a writer's strokes are corrected by.
 struct BiasCorrection {
     glm::dmat2 linear{1};  ///< map of flat positions about the centre of strokes written together
     std::vector<BiasPiece> pieces;

@@ -31,6 +31,7 @@ struct PressureOptions {
     double follow = 0.025;      ///< seconds
 };
 
+/// Motion of the hand up to the last sample.
 struct PressureState {
     bool started = false;
     double time = 0;      ///< seconds

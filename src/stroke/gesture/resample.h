@@ -12,6 +12,7 @@
 
 namespace tuft::stroke {
 
+/// Distance of poses, and what counts towards it.
 struct ResampleOptions {
     double step = 1e-4;                 ///< metres between two poses, in the measure below
     double lever = 0.02;                ///< metres that a rotation by 1 rad counts (the tuft's length)

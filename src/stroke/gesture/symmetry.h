@@ -9,6 +9,7 @@
 /// own: on an asymmetric model every copy has its own contact.
 namespace tuft::stroke {
 
+/// Copies that each stroke gets.
 struct Symmetry {
     bool mirror_x = false, mirror_y = false, mirror_z = false;  ///< in the planes through the centre across x, y, z
     int radial = 1;                                             ///< copies round the axis with the original, 1–32

@@ -9,6 +9,7 @@
 /// Strokes of stroke files as journal entries. Called by `tuft paint` and by the studio.
 namespace tuft::stroke {
 
+/// How strokes of a file become entries.
 struct EntryOptions {
     StrokeSettings settings = {};                ///< of strokes without settings
     std::string brush, ink;                      ///< presets for all strokes; empty: those that the strokes name

@@ -99,6 +99,7 @@ struct EntryGroup {
     bool operator==(const EntryGroup&) const = default;
 };
 
+/// An entry: header and content.
 struct JournalEntry {
     std::uint64_t id = 0;  ///< unique in its journal, never reused; set by `Journal::append`
     bool hidden = false;   ///< stored, but not performed
@@ -133,6 +134,7 @@ struct JournalEntry {
 /// Kind of an entry as files, lists and the command line name it.
 enum class EntryKind { stroke, dip, rinse, reshape, dry, layer, mask, fill, wipe, wash, part };
 
+/// Return the kind of a content and of an entry.
 EntryKind kind_of(const EntryContent& content);
 inline EntryKind kind_of(const JournalEntry& entry) {
     return kind_of(entry.content);

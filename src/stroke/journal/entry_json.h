@@ -32,6 +32,7 @@ Vec3 vector_of(const nlohmann::json& json);
 /// Returns an integer from 0 to `kNone` − 1; errors call it `name`. nlohmann's own conversion of 1e300 is undefined.
 std::uint32_t number_of(const nlohmann::json& json, const char* name);
 
+/// Convert settings and edits to JSON and back. Missing keys have their defaults; unknown keys are ignored.
 nlohmann::json json_of(const StrokeSettings& settings);
 StrokeSettings settings_of(const nlohmann::json& json);
 

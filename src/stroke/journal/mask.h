@@ -53,6 +53,7 @@ struct Mask {
     bool operator==(const Mask&) const = default;
 };
 
+/// Masks of a document.
 struct MaskTable {
     std::vector<Mask> masks;
     std::uint32_t next_id = 1;

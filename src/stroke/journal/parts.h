@@ -24,6 +24,7 @@ struct Part {
     bool operator==(const Part& other) const;
 };
 
+/// States of the model's parts.
 struct PartTable {
     std::vector<Part> parts;  ///< those that are not plain, ascending by name
 

@@ -9,6 +9,7 @@
 /// A journal as recorded strokes, to be written to a stroke file. Called by `tuft export` and by the studio.
 namespace tuft::stroke {
 
+/// A journal as strokes of a file.
 struct RecordedJournal {
     std::vector<RecordedStroke> strokes;  ///< with settings, and the names of layers and masks
     std::size_t left_out = 0;             ///< entries that a stroke file cannot hold: edits of layers and masks

@@ -14,6 +14,7 @@ namespace tuft::stroke {
 /// An entry that a stroke file has before a stroke.
 using Preparation = std::variant<BrushAction, Dry, WashPalette, Fill>;
 
+/// Returns the kind of the entry that a preparation becomes.
 EntryKind kind_of(const Preparation& preparation);
 
 /// Returns a preparation as "ACTION[:INK][,depth=PART][,amount=PART][,side=PART][,time=SECONDS]", such as

@@ -23,6 +23,7 @@ enum class FilmModel {
     wet,    ///< ink flows, soaks in, dries, and is exchanged both ways between tuft and surface
 };
 
+/// Settings of one stroke. The journal stores them with it.
 struct StrokeSettings {
     brush::SpineMethod spine = brush::SpineMethod::rod;      ///< `rod`: the method of the brush's preset
     footprint::Mapping footprint = footprint::Mapping::log;  ///< along the surface, or on one plane

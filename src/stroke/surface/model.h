@@ -30,6 +30,7 @@ struct Model {
     footprint::Surface surface() const { return {*mesh, atlas, texels, clusters}; }
 };
 
+/// Options of `prepare_model`.
 struct ModelOptions {
     mesh::RepairOptions repair;   ///< its `progress` is replaced by the one below
     atlas::UnwrapOptions unwrap;  ///< likewise

@@ -26,6 +26,7 @@ struct SkeletonNode {
     std::size_t n_pieces = 0;  ///< ends of pieces: 1 a free end, 2 a corner, more a junction
 };
 
+/// Centre lines of a character, in pieces that meet at nodes.
 struct Skeleton {
     std::vector<Piece> pieces;
     std::vector<SkeletonNode> nodes;

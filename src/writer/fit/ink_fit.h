@@ -17,6 +17,7 @@ struct FitTarget {
     std::vector<float> weights;  ///< of each cell's error, 0–1, as under another stroke; empty: 1
 };
 
+/// Options of `fit_stations`.
 struct FitOptions {
     int tries = 8;           ///< drawings on the plane at most
     double step = 5;         ///< units between poses
@@ -26,6 +27,7 @@ struct FitOptions {
     int idle = 4;            ///< tries without a gain after which it stops
 };
 
+/// Result of `fit_stations`.
 struct FitResult {
     std::vector<Station> stations;
     double iou = 0;  ///< weighted intersection over union with the wanted area

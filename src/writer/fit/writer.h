@@ -16,6 +16,7 @@
 /// From characters to motions of a brush. Called by `tuft write`.
 namespace tuft::writer {
 
+/// Options of `Writer`.
 struct WriterOptions {
     Style style;
     std::string brush;   ///< preset; empty: the style's, in the size that suits the character

@@ -15,6 +15,7 @@ enum class HandKind {
     nib,    ///< a broad edge at a fixed angle, pressed evenly
 };
 
+/// A style of writing. Units are 1/1024 of a character's side.
 struct Style {
     std::string name;
     HandKind kind = HandKind::brush;

@@ -26,6 +26,7 @@ inline const char* name_of(Direction direction) {
 }
 std::optional<Direction> direction_named(std::string_view name);
 
+/// Size and spacing of a text.
 struct LayoutOptions {
     Direction direction = Direction::horizontal;
     double side = 0.05;          ///< metres, of a character's square
