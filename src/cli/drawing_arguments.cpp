@@ -5,8 +5,9 @@
 #include "cli/options.h"
 
 namespace tuft::cli {
+namespace {
 
-void add_drawing_options(CLI::App& command, Paint& paint) {
+void add_area_options(CLI::App& command, Paint& paint) {
     command
         .add_option(
             "--areas", paint.areas,
@@ -37,6 +38,9 @@ void add_drawing_options(CLI::App& command, Paint& paint) {
         .add_option("--only", paint.only, "only these layers and named groups of an .svg: NAME, more by another --only")
         ->allow_extra_args(false)
         ->type_name("NAME");
+}
+
+void add_copy_options(CLI::App& command, Paint& paint) {
     command
         .add_option("--along", paint.along,
                     "repeats the drawing along a path on the model, such as an ornament round a bowl: rim, level "
@@ -64,6 +68,13 @@ void add_drawing_options(CLI::App& command, Paint& paint) {
         ->check(number_in(1, 32))
         ->type_name("N");
     command.add_option("--radial-axis", paint.radial_axis, "axis of --radial")->check(CLI::IsMember({"x", "y", "z"}));
+}
+
+}  // namespace
+
+void add_drawing_options(CLI::App& command, Paint& paint) {
+    add_area_options(command, paint);
+    add_copy_options(command, paint);
     command.add_flag("--auto-texel", paint.auto_texel,
                      "texels as small as the finest detail of a drawing's areas needs: a third of it");
 }

@@ -292,6 +292,15 @@ nlohmann::json painted_json(const Painted& painted, const stroke::Model& model) 
     return j;
 }
 
+nlohmann::json result_json(const Painted& painted, const std::vector<stroke::JournalEntry>& strokes,
+                           const stroke::Document& painting, const std::optional<PlacedDrawing>& placed) {
+    nlohmann::json j = painted_json(painted, painting.model());
+    if (placed) j["placed"] = placed_json(*placed);
+    j["inks"] = inks_json(strokes, painting);
+    j["canvas_hash"] = fmt::format("{:016x}", painting.layers().hash());
+    return j;
+}
+
 }  // namespace
 
 int run(const Paint& a) {
@@ -356,11 +365,8 @@ int paint(const Paint& a, const StrokeSource& source) {
     write_forces(painted.reports, a.forces);
     console.clear();
     if (!a.common.json) return print_painted(painted, model, a), 0;
-    nlohmann::json j = painted_json(painted, model);
+    nlohmann::json j = result_json(painted, strokes, painting, placed);
     j["model"] = a.model.string();
-    if (placed) j["placed"] = placed_json(*placed);
-    j["inks"] = inks_json(strokes, painting);
-    j["canvas_hash"] = fmt::format("{:016x}", painting.layers().hash());
     j["seconds"]["total"] = seconds_since(start);
     print_json(j);
     return 0;

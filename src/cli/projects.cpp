@@ -176,7 +176,7 @@ int run(const Replay& a) {
     }
     show_layers(painting, a.view.layers);
     write_outputs(outputs, painting, console);
-    if (!a.moved.empty()) write_revision_picture(a.moved, revised, fit, painting, former, a.view, console);
+    if (!a.moved.empty()) write_revision_picture(a, revised, fit, painting, former, console);
     console.clear();
     if (a.common.json) {
         nlohmann::json list = nlohmann::json::array();

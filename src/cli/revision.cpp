@@ -224,12 +224,11 @@ nlohmann::json to_json(const RevisedStrokes& strokes, const Fit& fit) {
     return j;
 }
 
-void write_revision_picture(const std::filesystem::path& path, const RevisedStrokes& strokes, const Fit& fit,
-                            const stroke::Document& painting, const mesh::SurfaceQuery& former, const View& view,
-                            Console& console) {
+void write_revision_picture(const Replay& arguments, const RevisedStrokes& strokes, const Fit& fit,
+                            const stroke::Document& painting, const mesh::SurfaceQuery& former, Console& console) {
     const stroke::Model& model = painting.model();
-    render::Image image = draw_picture({.model = model, .painting = &painting, .view = view}, console);
-    const render::Camera camera = camera_of(view, *model.mesh);
+    render::Image image = draw_picture({.model = model, .painting = &painting, .view = arguments.view}, console);
+    const render::Camera camera = camera_of(arguments.view, *model.mesh);
     tint(image, camera, *model.query, Deviation(strokes.change, former, *model.query));
     PictureOverlay overlay(image, camera, *model.query);
     const Vec3 red = render::linear_colour(220, 0, 30);
@@ -245,7 +244,7 @@ void write_revision_picture(const std::filesystem::path& path, const RevisedStro
     }
     draw_legend(overlay, image);
     image.rgb = overlay.rgb();
-    write_picture(path, image);
+    write_picture(arguments.moved, image);
 }
 
 }  // namespace tuft::cli

@@ -43,11 +43,10 @@ void note_fit(const Replay& arguments, const RevisedStrokes& strokes, const Fit&
 /// All of the fit but the mismatches.
 nlohmann::json to_json(const RevisedStrokes& strokes, const Fit& fit);
 
-/// Writes a picture of the painting on the revised model. Surface that lies elsewhere than on the former model, after
-/// its motion and that of its part, is coloured by the distance; the ink's path of strokes that no longer fit is red,
-/// with the number of the stroke.
-void write_revision_picture(const std::filesystem::path& path, const RevisedStrokes& strokes, const Fit& fit,
-                            const stroke::Document& painting, const mesh::SurfaceQuery& former, const View& view,
-                            Console& console);
+/// Writes `arguments.moved`, a picture of the painting on the revised model. Surface that lies elsewhere than on the
+/// former model, after its motion and that of its part, is coloured by the distance; the ink's path of strokes that no
+/// longer fit is red, with the number of the stroke.
+void write_revision_picture(const Replay& arguments, const RevisedStrokes& strokes, const Fit& fit,
+                            const stroke::Document& painting, const mesh::SurfaceQuery& former, Console& console);
 
 }  // namespace tuft::cli

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "ink/canvas/canvas.h"
+#include "ink/exchange/stamped_tile.h"
 
 /// \file
 /// Deposit of ink from the tuft onto texels. Called by `stroke` for every tile of every stamp.
@@ -57,8 +58,7 @@ void film_goals(std::span<float, atlas::kTileTexels> goal, std::span<const float
 /// `tone` [256]: factor on g(f) of each texel, about 1 (film_tone.h); empty: 1.
 double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> coverage,
                std::span<const float, atlas::kTileTexels> area, double ds, const DepositParams& params);
-double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> coverage,
-               std::span<const float, atlas::kTileTexels> area, const DepositParams& params, const DepositLaw& law,
+double deposit(Canvas& canvas, const StampedTile& tile, const DepositParams& params, const DepositLaw& law,
                std::span<const float> tone = {});
 
 }  // namespace tuft::ink

@@ -161,6 +161,16 @@ void HairContact::place_nodes(Stamp& stamp, const TuftInHand& tuft, const footpr
     orientation_ = axis_.x * e.y - axis_.y * e.x < 0 ? -1 : 1;
 }
 
+void HairContact::add_tone(Stamp& stamp, const TuftInHand& tuft, const footprint::TouchingHair& hair,
+                           const HairShape& shape, const contact::Result& contact, const MotionTracker& motion) {
+    if (!motion.touching) tone_.clear();
+    const double contrast = 1 - static_cast<double>(stamp.separation);
+    if (!(contrast > 0)) return;
+    tone_.update(shape.edge, options_.closed.cell, tuft.brush.reservoir, hair.bundles,
+                 [&] { return footprint::hair_contact_points(hair.trails, hair.bundles, hair.branches); });
+    stamp.tone = tone_.at(shape.edge, contact.frame, contrast);
+}
+
 Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, HairShape shape,
                               const MotionTracker& motion, double dt) {
     const double length = tuft.preset().length;
@@ -214,14 +224,7 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
     else
         stamp.footprint = std::move(*shape.closed);
     stamp.leapt = !shape.leapt.empty();
-    if (options_.tones && !carried) {
-        if (!motion.touching) tone_.clear();
-        if (const double contrast = 1 - static_cast<double>(stamp.separation); contrast > 0) {
-            tone_.update(shape.edge, options_.closed.cell, tuft.brush.reservoir, bundles,
-                         [&] { return footprint::hair_contact_points(trails, bundles, branches); });
-            stamp.tone = tone_.at(shape.edge, contact.frame, contrast);
-        }
-    }
+    if (options_.tones && !carried) add_tone(stamp, tuft, hair, shape, contact, motion);
     previous_ = std::move(uncovered);
     previous_frame_ = contact.frame;
     if (options_.places_nodes) place_nodes(stamp, tuft, hair, contact);

@@ -86,7 +86,7 @@ void StampBatch::write_tile(std::span<const TileStamp> stamps, std::span<const i
         if (stamp.by_hair) target_.expose_grain(slot, exposure, stamp.grain_film);
         ink::DepositParams ink = stamp.ink;
         ink.capacity = target_.capacity(slot, ink.capacity);
-        given[k] = ink::deposit(target_.canvas(), slot, exposure, tile.area, ink, laws[stamps[k].stamp],
+        given[k] = ink::deposit(target_.canvas(), {slot, exposure, tile.area, stamp.ds}, ink, laws[stamps[k].stamp],
                                 *toned ? std::span<const float>(tone) : std::span<const float>());
     }
 }

@@ -154,9 +154,9 @@ class Search {
         accept(start);
         if (done_) return;
         const ModelMotion rough =
-            register_points(few_, revised_.query, start, freedom, size_, kSlack * size_, kRoughSteps);
+            register_points(few_, revised_.query, start, {freedom, size_, kSlack * size_, kRoughSteps});
         if (gap(former_, revised_, rough).fitting > kHopeful * size_) return;
-        accept(register_points(former_.points, revised_.query, rough, freedom, size_, kSlack * size_, kSteps));
+        accept(register_points(former_.points, revised_.query, rough, {freedom, size_, kSlack * size_, kSteps}));
     }
 
     // With many points.
@@ -165,8 +165,8 @@ class Search {
         const std::vector<OrientedPoint> many = even_points(former_.query.mesh(), kManyPoints);
         // At first with what would slide along a smooth surface but for its border, then without what was changed.
         const ModelMotion close =
-            register_points(many, revised_.query, *found_, freedom, size_, kSlack * size_, kSteps);
-        const ModelMotion fine = register_points(many, revised_.query, close, freedom, size_, 0, kSteps);
+            register_points(many, revised_.query, *found_, {freedom, size_, kSlack * size_, kSteps});
+        const ModelMotion fine = register_points(many, revised_.query, close, {freedom, size_, 0, kSteps});
         const double most = kCountsAs * size_;
         if (mean_distance(many, revised_.query, fine, most).fitting <
             mean_distance(many, revised_.query, *found_, most).fitting)

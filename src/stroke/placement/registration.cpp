@@ -148,10 +148,12 @@ MeanDistance mean_distance(std::span<const OrientedPoint> points, const mesh::Su
 }
 
 ModelMotion register_points(std::span<const OrientedPoint> points, const mesh::SurfaceQuery& surface, ModelMotion start,
-                            MotionFreedom freedom, double size, double slack, int iterations) {
+                            const RegistrationOptions& options) {
+    const MotionFreedom freedom = options.freedom;
+    const double size = options.size;
     ModelMotion motion = start;
-    for (int i = 0; i < iterations && size > 0; ++i) {
-        const std::vector<Pair> pairs = find_pairs(points, surface, motion, slack);
+    for (int i = 0; i < options.iterations && size > 0; ++i) {
+        const std::vector<Pair> pairs = find_pairs(points, surface, motion, options.slack);
         const int n = unknowns_of(freedom);
         if (pairs.size() < static_cast<std::size_t>(2 * n)) return motion;
         Vec3 centre(0);

@@ -32,6 +32,14 @@ struct MeanDistance {
 MeanDistance mean_distance(std::span<const OrientedPoint> points, const mesh::SurfaceQuery& surface,
                            const ModelMotion& motion, double most);
 
+/// Limits of `register_points`.
+struct RegistrationOptions {
+    MotionFreedom freedom = MotionFreedom::similarity;
+    double size = 0;      ///< metres, diagonal of the surface's box
+    double slack = 0;     ///< metres within which a point counts, however far it is from the median
+    int iterations = 80;  ///< at most
+};
+
 /// Improves a motion until it takes the points onto the surface: minimises Σ (n·(M p − c))² over the points, c the
 /// closest point and n its normal. Points farther than `slack` and than five times the median distance lie on what was
 /// changed and do not count, nor do pairs whose normals differ by more than 70°. Directions in which the surface slides
@@ -39,6 +47,6 @@ MeanDistance mean_distance(std::span<const OrientedPoint> points, const mesh::Su
 /// where no point moves by more than 1e-7 of `size`, or after `iterations`. Converges from rotations of about 30° where
 /// shapes agree. Deterministic.
 ModelMotion register_points(std::span<const OrientedPoint> points, const mesh::SurfaceQuery& surface, ModelMotion start,
-                            MotionFreedom freedom, double size, double slack, int iterations);
+                            const RegistrationOptions& options);
 
 }  // namespace tuft::stroke
