@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # check_documents.sh SOURCE: what the documents name exists: the targets of links, paths of files in `back quotes`, files
-# of the code by their bare names, such as (deposit.h), and in READMEs of src/ the names of functions and types in `back
-# quotes`, and the folders of each module in its table. Names with a capital NAME in them are patterns.
+# of the code by their bare names, such as (deposit.h), in READMEs of src/ the names of functions and types in `back
+# quotes`, the keys of sources, and the folders of each module in its table. Names with a capital NAME in them are patterns.
 set -euo pipefail
 export LC_ALL=C
 cd "$1"
@@ -35,6 +35,11 @@ while read -r document; do
   done < <(grep -oE '`[A-Za-z_][A-Za-z0-9_:]*(\([^`]*\))?`' "$lists/text" | tr -d '`' | sed -E 's/\(.*//; s/.*:://' |
     grep -E '_|[a-z][A-Z]' | grep -v NAME | sort -u | comm -23 - "$lists/names")
 done < <(find README.md src tests samples models -name '*.md' -not -path '*/build/*')
+# A source that is cited by its key, such as [Huang2018], has an entry in the bibliography, and each entry is cited.
+keys='\[[A-Z][A-Za-z]*[A-Za-z][0-9]{4}\]'
+while read -r key; do missing src/BIBLIOGRAPHY.md "$key is cited and has no entry"; done < <(
+  { code -print0 | xargs -0 grep -ohE "$keys" || true; find src -name README.md -print0 | xargs -0 grep -ohE "$keys"; } |
+    sort -u | comm -23 - <(grep -oE "$keys" src/BIBLIOGRAPHY.md | sort -u))
 # The table of modules in src/README.md names the folders of each.
 folders_named() { grep -oE '`[a-z]+`' <<<"$1" | tr -d '`' | grep -vx "$2" | sort || true; }
 folders_there() {

@@ -81,7 +81,7 @@ struct UnwrapOptions {
     ProgressFn progress;  ///< receives the phase and 0–1; empty: none
 };
 
-/// Measures of an atlas. Stretch after Sander et al. 2001 (1 = isometry).
+/// Measures of an atlas. Stretch after [Sander2001] (1 = isometry).
 struct AtlasReport {
     std::size_t charts = 0;                               ///< number of charts
     std::size_t flips = 0;                                ///< triangles with negative area in UV

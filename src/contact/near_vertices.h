@@ -10,7 +10,7 @@
 /// \file
 /// Contact by the source paper's method: distance over the nearest vertices, tip moved to the surface, effective
 /// vertices in the tuft's bounding sphere, projection plane. Called by contact.h for `Method::vertices`. Source:
-/// variable stiffness brush (Huang and Hou 2018), sections 3 and 4.
+/// [Huang2018], sections 3 and 4.
 namespace tuft::contact {
 
 /// d = Σ w_i n_i·(P0 - v_i) / Σ w_i with w_i = 1 - |P0 - v_i| / d_max; negative inside.

@@ -15,8 +15,8 @@ struct Obb {
     Vec3 half{0};    ///< metres along the columns
 };
 
-/// Returns the box along the principal axes of the points, enlarged by `margin` on every side. Source: Gottschalk,
-/// Lin and Manocha 1996.
+/// Returns the box along the principal axes of the points, enlarged by `margin` on every side. Source:
+/// [Gottschalk1996].
 Obb obb_of(std::span<const Vec3> points, double margin = 0);
 
 /// Returns a box along the axes as an oriented one.

@@ -6,7 +6,7 @@
 #include "core/ease.h"
 
 /// \file
-/// Value noise: values at whole numbers, interpolated by 3f² − 2f³ (Perlin 1985 with values in place of gradients).
+/// Value noise: values at whole numbers, interpolated by 3f² − 2f³ ([Perlin1985] with values in place of gradients).
 /// Used by the hair, the furrows, the substrate's grain and the wet film.
 namespace tuft {
 

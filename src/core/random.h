@@ -6,7 +6,7 @@
 /// Seeded random numbers. The same seed gives the same bits on every machine, for every module.
 namespace tuft {
 
-/// Returns a 64-bit mix of a seed and a counter (SplitMix64 finaliser, Steele et al. 2014). The same pair gives the
+/// Returns a 64-bit mix of a seed and a counter (SplitMix64 finaliser, [Steele2014]). The same pair gives the
 /// same bits everywhere, whatever the order of calls.
 constexpr std::uint64_t hash_bits(std::uint64_t seed, std::uint64_t counter = 0) {
     std::uint64_t z = seed + 0x9e3779b97f4a7c15ULL * (counter + 1);

@@ -28,7 +28,7 @@ struct Limits {
 ///     a_i = (s_i u_i − s_{i−1} u_{i−1}) / ½ (l_i / s_i + l_{i−1} / s_{i−1}),   |a_i| ≤ acceleration.
 ///
 /// Half of it goes to the change of direction u, which bounds both speeds, half to the change of speed, which is met by
-/// one pass forwards and one backwards (as Bobrow et al. 1985 do on the phase plane). No segment is faster than
+/// one pass forwards and one backwards (as [Bobrow1985] do on the phase plane). No segment is faster than
 /// `speed`, turns faster than `turn`, or takes less time than `pace` (seconds for each segment, the hand's; empty:
 /// none). Segments without length last as long as the hand did or the turn needs, at rest. Linear cost.
 void retime(std::vector<Waypoint>& points, const Limits& limits, std::span<const double> pace = {});

@@ -141,7 +141,7 @@ TEST(Foam, IsTheSameAgain) {
     EXPECT_NE(make_tuft(other).carried->rest, a.carried->rest);
 }
 
-// Pores cut 55 % of the skin: circles of a Boolean model, 1 − e^(−0.8), as its spheres fill the volume (Delesse 1847).
+// Pores cut 55 % of the skin: circles of a Boolean model, 1 − e^(−0.8), as its spheres fill the volume [Delesse1847].
 TEST(Foam, PoresOpenTheSkinAsTheyOpenTheVolume) {
     const Preset p = smooth();
     const Tuft tuft = make_tuft(p);

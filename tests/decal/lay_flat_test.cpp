@@ -50,7 +50,7 @@ TEST(LayFlat, LengthsOnAConeAreThoseOfItsSector) {
     }
 }
 
-// Milnor 1969: every map of a cap of angular radius α has greatest scale / least scale ≥ k = α / sin α, which the
+// [Milnor1969]: every map of a cap of angular radius α has greatest scale / least scale ≥ k = α / sin α, which the
 // azimuthal equidistant map has. With the best size of the sheet the strain is then (k − 1)/(k + 1).
 double least_cap_strain(double polar) {
     const double k = polar / std::sin(polar);

@@ -11,7 +11,7 @@
 #include "core/geometry/types.h"
 #include "mesh/triangle_mesh.h"
 
-/// Exact shortest paths over the triangles near a point (Xin and Wang 2009, by CGAL): what the
+/// Exact shortest paths over the triangles near a point ([Xin2009], by CGAL): what the
 /// log map of stamps is measured against on meshes.
 namespace tuft::testing {
 

@@ -160,7 +160,7 @@ double front_along_x(const Wet& s, double edge, const FilmParams& p) {
     return x - supplied;
 }
 
-// A strip of paper that dips into ink: Lucas 1918 and Washburn 1921, x² = r σ cos θ t / (2 η), in the steps that a
+// A strip of paper that dips into ink: [Lucas1918] and [Washburn1921], x² = r σ cos θ t / (2 η), in the steps that a
 // painter's strokes get.
 TEST(FilmLaws, AFrontInPaperGoesWithTheRootOfTime) {
     const Substrate paper = load_substrate("rice-paper");

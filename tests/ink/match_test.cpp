@@ -170,7 +170,7 @@ TEST(Match, AgreesWithBruteForceOnAGrid) {
             double best = 1e9;
             for (const Lab& lab : grid) best = std::min(best, delta_e_2000(lab, lab_of(wanted)));
             // A mix with fewer pigments may be worse by what nobody sees. Where the wanted hue is
-            // opposite to all that there are, ΔE2000 itself jumps (Sharma, Wu, Dalal 2005,
+            // opposite to all that there are, ΔE2000 itself jumps ([Sharma2005],
             // "Discontinuities").
             const double jump = best > 20 ? 1 : 0;
             EXPECT_LT(search.nearest(wanted, 3).delta_e, best + kSameColour + 1e-3 + jump)

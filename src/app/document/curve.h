@@ -36,7 +36,7 @@ struct CurveSample {
 /// Returns the centripetal Catmull–Rom spline through the points, projected onto the surface. Knots are at the square
 /// roots of the chords, so it has no loops and no overshoot; two points give a straight line. Each point moves against
 /// the linearly interpolated `outward` to the first surface that faces it. [`per_span` per span + 1]; empty below two
-/// points. Source: Barry and Goldman 1988.
+/// points. Source: [Barry1988].
 std::vector<CurveSample> project_curve(const mesh::SurfaceQuery& query, std::span<const CurvePoint> points,
                                        int per_span = 64);
 

@@ -21,12 +21,12 @@ struct ArapOptions {
     std::function<bool(int steps)> should_stop;  ///< called after each iteration with the current `uv`; true stops
 };
 
-/// Returns the least squares conformal map (Lévy et al. 2002) of a disk by CGAL, scaled to the chart's area. Empty
+/// Returns the least squares conformal map [Levy2002] of a disk by CGAL, scaled to the chart's area. Empty
 /// when CGAL fails or the result is not finite.
 std::optional<std::vector<Vec2>> lscm(const ChartMesh& chart);
 
 /// Minimises Σ_t Σ_k cot α_k |(u_i − u_j) − R_t (x_i − x_j)|² over UVs u and one rotation R_t per triangle,
-/// alternating local and global steps (Liu et al. 2008). `uv` is the start and the result. Returns its energy
+/// alternating local and global steps [Liu2008]. `uv` is the start and the result. Returns its energy
 /// before the last step. With `faces`, only those move; the corners that they share with others are fixed.
 ///
 /// The matrix is factorised once, by Eigen's simplicial L D Lᵀ with an approximate minimum degree ordering. Against

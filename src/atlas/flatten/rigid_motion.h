@@ -16,7 +16,7 @@ struct RigidMotion {
     Vec2 operator()(const Vec2& p) const { return Vec2(c * p.x - s * p.y, s * p.x + c * p.y) + shift; }
 };
 
-/// Returns the motion m that minimises Σ |p − m(q)|² over the pairs (p, q) (Kabsch 1976, in the plane). The
+/// Returns the motion m that minimises Σ |p − m(q)|² over the pairs (p, q) ([Kabsch1976], in the plane). The
 /// identity for no pairs.
 RigidMotion fit_motion(std::span<const std::array<Vec2, 2>> pairs);
 

@@ -44,7 +44,7 @@ struct BorderCells {
 /// Returns the Voronoi cells of the texels beside seams, among the texels of their chart and those over the seams,
 /// unrolled about the seam. The texels of both sides tile the surface together: whole inside their charts, cut
 /// along the seam. A face is perpendicular to the line between its texels, so flux = k · conductance · (w_a − w_b)
-/// is exact for linear w (Eymard, Gallouët and Herbin 2000, admissible meshes). Texels are whole beyond borders of
+/// is exact for linear w ([Eymard2000], admissible meshes). Texels are whole beyond borders of
 /// the surface and at more than one seam at once. The same bits for any number of threads. `only_cells`: without
 /// taps and faces, in half of the memory.
 BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,

@@ -44,7 +44,7 @@ inline bool is_packed(TexelStore store, std::uint32_t size) {
 }
 
 /// The same in 16-bit numbers: position = lo + step (x, y, z) in the box of the texel's cluster,
-/// normal by the octahedral map (Cigolle et al. 2014): (nu, nv) = 32767.5 (1 + (x, y)/(|x|+|y|+|z|)),
+/// normal by the octahedral map [Cigolle2014]: (nu, nv) = 32767.5 (1 + (x, y)/(|x|+|y|+|z|)),
 /// the lower half folded over the diagonals; within 6.5e-5 rad.
 struct PackedShape {
     alignas(64) std::array<std::uint16_t, kTileTexels> x, y, z, nu, nv;

@@ -5,7 +5,7 @@
 #include "brush/papers/spine_model.h"
 
 /// \file
-/// The brush model of Chu and Tai 2002 with the additions of Van Laerhoven and Van Reeth 2007: a kinematic chain of
+/// The brush model of [Chu2002] with the additions of [VanLaerhoven2007]: a kinematic chain of
 /// least energy with friction as energy, and lateral nodes beside it.
 ///
 /// Per step: the root goes to the pose, bends are kept. Nodes below the surface get constraints, and the points where

@@ -15,7 +15,7 @@
 /// angle Δslope; rest_i = r − r_l + s(θ). Chu and Tai print r + s(θ) with a major radius d + r_l, which makes no
 /// circle at rest [R]. h as in chain_solver.h.
 ///
-/// Source: Chu and Tai 2002, 4.1.1, 4.1.2, 4.2.2.
+/// Source: [Chu2002], 4.1.1, 4.1.2, 4.2.2.
 namespace tuft::brush {
 
 /// Side nodes along one flank of the tuft, and what pulls on them.

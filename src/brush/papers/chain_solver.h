@@ -24,7 +24,7 @@
 /// ∥ is along the projected tip; η = C max(0, d_p·d)^4 with d_p the direction of a tip dragged last. The factor 2 makes
 /// κ_f = ½ isotropic with μ [X].
 ///
-/// Sources: Chu and Tai 2002, 4.2.2–4.2.4; Van Laerhoven and Van Reeth 2007, equations (2)–(4).
+/// Sources: [Chu2002], 4.2.2–4.2.4; [VanLaerhoven2007], equations (2)–(4).
 namespace tuft::brush {
 
 /// Segments and joints of a spine. Lengths are in units of its length L.

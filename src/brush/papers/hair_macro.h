@@ -11,7 +11,7 @@
 #include "core/system/recycled.h"
 
 /// \file
-/// A hair macro: the least part of the tuft in the model of Xu, Lau and Pan 2009, ch. 5. An ellipse E(t) with semi-axes
+/// A hair macro: the least part of the tuft in the model of [Xu2009], ch. 5. An ellipse E(t) with semi-axes
 /// L(t), S(t), turned by θ(t), is swept along a skeleton K(t) and stays normal to it; t is 0 at the tip, 1 at the root
 /// (5.1), (5.2) [p]. macro_model.cpp moves macros.
 ///

@@ -15,7 +15,7 @@
 /// affine motions of its control points, since Bernstein polynomials reproduce linear functions. Inside, X is not on
 /// the spines: a lattice of degree K smooths.
 ///
-/// Source: Van Laerhoven and Van Reeth 2007, 3.3 (Sederberg and Parry 1986).
+/// Source: [VanLaerhoven2007], 3.3 [Sederberg1986].
 namespace tuft::brush {
 
 /// Control points that two spines drive.

@@ -8,7 +8,7 @@
 /// Clusters of hair macros: the middle layer of the tuft. Called by macro_model.cpp.
 ///
 /// Hair macros whose geometries are similar form a cluster. One of them, the primitive, is simulated; the others are
-/// affine copies of it. Source: Xu, Lau and Pan 2009, 5.3.1 [p]. Which maps, and how similar, is not printed. Ours are
+/// affine copies of it. Source: [Xu2009], 5.3.1 [p]. Which maps, and how similar, is not printed. Ours are
 /// the mirror images of a split, and a copy leaves its cluster as soon as the primitive's step would not be its own
 /// [X]. So clusters save work and change nothing.
 namespace tuft::brush::macro {

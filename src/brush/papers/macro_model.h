@@ -5,7 +5,7 @@
 #include "brush/papers/spine_model.h"
 
 /// \file
-/// Brush model `macro` of Xu, Lau and Pan 2009, ch. 5: hair macros swept by splines, in three layers: macro, cluster,
+/// Brush model `macro` of [Xu2009], ch. 5: hair macros swept by splines, in three layers: macro, cluster,
 /// tuft. It is geometric: no forces are solved. The lower layers are hair_macro.h and macro_cluster.h.
 ///
 /// A step carries the macros with the ferrule and lets them recover (5.10); then each

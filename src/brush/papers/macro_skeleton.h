@@ -9,7 +9,7 @@
 /// Deformation of the skeleton of a hair macro by the surface: projection, rotation and kink-up. Nodes go from tip
 /// (t = 0) to root (t = 1), metres, world. Called by hair_macro.cpp.
 ///
-/// Source: Xu, Lau and Pan 2009, 5.4.1.1. [p] is printed there, [R] is restored, [X] is ours.
+/// Source: [Xu2009], 5.4.1.1. [p] is printed there, [R] is restored, [X] is ours.
 ///
 ///     K_n(t) = (1 − r) K_pro(t) + r K_ro(t)                                          (5.3a) [p]
 ///     K_pro: points below the surface, dropped onto it along its normal              (5.3b) [p]

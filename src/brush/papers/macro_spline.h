@@ -9,7 +9,7 @@
 
 /// \file
 /// Cubic B-splines of four control points (knots 0, 0, 0, 0, 1, 1, 1, 1) of a hair macro, and their least-squares
-/// fits. t is 0 at the tip and 1 at the root. Source: Xu, Lau and Pan 2009, 5.3.1 and 5.4.3 (four control points)
+/// fits. t is 0 at the tip and 1 at the root. Source: [Xu2009], 5.3.1 and 5.4.3 (four control points)
 /// [p]; the fit is named there, (5.3f) and Fig. 5.7, but not printed [R].
 namespace tuft::brush::macro {
 

@@ -9,7 +9,7 @@
 /// Sweeping ellipse, inner stress, distension and recovery of a hair macro. Lengths are in units of the rest radius
 /// r(t) of the tuft. Called by hair_macro.cpp.
 ///
-/// Source: Xu, Lau and Pan 2009, 5.4.1.2 and 5.4.2. [p] is printed there, [R] is restored, [X] is ours.
+/// Source: [Xu2009], 5.4.1.2 and 5.4.2. [p] is printed there, [R] is restored, [X] is ours.
 ///
 /// A point of the profile is x = L ν cos w, y = S ν sin w, 0 ≤ ν ≤ 1                 (5.1) [p].
 /// Its stress is tan(k1 q) for q ≤ 0 and tan(k2 q) else, kept off ±π/2              (5.5) [p],

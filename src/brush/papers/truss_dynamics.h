@@ -9,7 +9,7 @@
 /// \file
 /// Particles and springs of the truss model and their first-order dynamics. Called by truss_model.cpp.
 ///
-/// Source: Baxter, Scheib, Lin and Manocha 2001, 3.3 and 3.5. [p] is printed there, [R] is restored, [X] is ours.
+/// Source: [Baxter2001], 3.3 and 3.5. [p] is printed there, [R] is restored, [X] is ours.
 ///
 /// A truss is a pyramid of five particles: four of its base, which the handle drives, and the point [p]. A round has
 /// one, a flat or bright two, a filbert four with the outer ones shorter [p], by a fifth [X]. Neighbouring points are
@@ -18,7 +18,7 @@
 ///     Δx = (I − h M⁻¹ J)⁻¹ h M⁻¹ f(x),   J = ∂f/∂x of the linear part of the springs.
 ///
 /// The print lacks the M⁻¹ before J, without which N s/m is added to 1 [R]. M is the drag of a free particle, N s/m. J
-/// is constant, −Σ k over the springs of a particle, the same in all directions [p, from Desbrun et al. 1999]. It is at
+/// is constant, −Σ k over the springs of a particle, the same in all directions [p, from Desbrun1999]. It is at
 /// least as stiff as the springs are, so no step overshoots, however long; but hair that swings to the side is slowed
 /// by the stiffness along it, so a step of the brush is cut into short ones [X].
 ///

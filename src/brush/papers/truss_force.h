@@ -4,7 +4,7 @@
 /// Force to the hand by the law of the truss model, apart from the springs: the paper decouples both. Called by
 /// truss_model.cpp.
 ///
-/// Source: Baxter, Scheib, Lin and Manocha 2001, 4.2 and 4.3. [p] is printed there, [X] is ours. d_p is the depth of
+/// Source: [Baxter2001], 4.2 and 4.3. [p] is printed there, [X] is ours. d_p is the depth of
 /// the undeformed point, l_p the length of the head along the surface normal, θ the angle between normal and head.
 namespace tuft::brush::truss {
 

@@ -8,7 +8,7 @@
 #include "brush/papers/truss_skin.h"
 
 /// \file
-/// Brush model `truss` of Baxter, Scheib, Lin and Manocha 2001 (DAB): particles, springs and a subdivision skin. The
+/// Brush model `truss` of [Baxter2001] (DAB): particles, springs and a subdivision skin. The
 /// parts are truss_dynamics.h, truss_skin.h and truss_force.h.
 ///
 /// A step moves the base with the handle, in short steps of at most M/Σk, Σk the springs at a point, and at most 400;

@@ -10,9 +10,9 @@
 /// Skin of the truss model: a triangle mesh whose vertices are affine in the particles, refined by the Butterfly rule.
 /// Called by truss_model.cpp.
 ///
-/// Source: Baxter, Scheib, Lin and Manocha 2001, 3.4 [p]: control points anchored relative to the particles, triangular
-/// base mesh, interpolating Butterfly subdivision. The weights of the rule are not printed; they are those of Dyn,
-/// Levin and Gregory 1990 [R]: a new vertex on edge ab with opposite vertices c, d and wings e1 … e4 is
+/// Source: [Baxter2001], 3.4 [p]: control points anchored relative to the particles, triangular
+/// base mesh, interpolating Butterfly subdivision. The weights of the rule are not printed; they are those of
+/// [Dyn1990] [R]: a new vertex on edge ab with opposite vertices c, d and wings e1 … e4 is
 ///
 ///     ½ (a + b) + ⅛ (c + d) − 1/16 (e1 + e2 + e3 + e4),
 ///

@@ -18,9 +18,9 @@ namespace tuft::brush {
 enum class SpineMethod {
     rod,    ///< discrete elastic rod in contact, solved at every sample
     table,  ///< query table over the bending moment, rotated until the tip touches
-    macro,  ///< hair macros of Xu, Lau and Pan 2009
-    chain,  ///< kinematic chain of Chu and Tai 2002 and of Van Laerhoven and Van Reeth 2007
-    truss,  ///< spring truss of Baxter, Scheib, Lin and Manocha 2001
+    macro,  ///< hair macros of [Xu2009]
+    chain,  ///< kinematic chain of [Chu2002] and of [VanLaerhoven2007]
+    truss,  ///< spring truss of [Baxter2001]
 };
 
 /// Word of each method in files and options, in the order of the values.

@@ -31,7 +31,7 @@
 /// 5 K further unknowns a segment for K rods.
 ///
 /// Units as in rod.h: all rods share one L and one B0. Arrays go from root to tip.
-/// Sources: this project; Bico et al. 2004 and Py et al. 2007 (hair drawn together by a wet film).
+/// Sources: this project; [Bico2004] and [Py2007] (hair drawn together by a wet film).
 namespace tuft::brush::rod {
 
 inline constexpr int kMaxCoupled = 9;

@@ -37,7 +37,7 @@ struct SmallDeflection {
 
 /// Returns the deflection of a cantilever with transverse tip load P by linear theory, B w'' = P (L − x), without
 /// `floor`. Closed form by exponential integrals; Gauss quadrature where the closed form cancels (|β| < 0.05).
-/// Valid for |w| < 0.1 L: beyond it overshoots, see rod.h. Source: variable stiffness brush (Huang and Hou 2018),
+/// Valid for |w| < 0.1 L: beyond it overshoots, see rod.h. Source: [Huang2018],
 /// integrated anew.
 SmallDeflection small_deflection(const Profile& p, double xi);
 
@@ -50,7 +50,7 @@ struct SectionMoment {
     double residual = 0;  ///< curvature left after elastic unloading from there
 };
 SectionMoment section_moment(double k1);
-/// Masing's rule for the reversal at k1.
+/// Masing's rule [Masing1926] for the reversal at k1.
 SectionMoment section_moment(double k1, double k2);
 
 /// Nodes and weights of n-point Gauss–Legendre quadrature on (0, 1).

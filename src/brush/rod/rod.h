@@ -28,7 +28,7 @@
 /// Units: length L and root stiffness B0 are 1; forces are in B0/L², moments and energies in B0/L. Arrays go from
 /// root to tip.
 ///
-/// Sources: Bergou et al. 2008 (discrete rods), Chu and Tai 2002 and Van Laerhoven 2007 (friction as energy with
+/// Sources: [Bergou2008] (discrete rods), [Chu2002] and [VanLaerhoven2007] (friction as energy with
 /// lagged normal force); see README.
 namespace tuft::brush::rod {
 

@@ -239,7 +239,7 @@ double commit_joint(const Rod& rod, int j, JointMemory& memory, const Vec2& w);
 /// Recovers the set of joint j over Δt/T = `time`. An element whose strain s opposes its set p = w − s creeps, s ←
 /// s e^{−x time}, with x = clamp((t_rig − |p|/α_f)/(t_rig − t_ela)). A small set recovers fully; a set of t_rig
 /// times the elastic range does not recover. Returns the dissipated energy, ≥ 0: a held bend gains no energy.
-/// Source: after Xu et al. 2004, eq. 5.10.
+/// Source: after [Xu2004], eq. 5.10.
 double recover_joint(const Rod& rod, int j, JointMemory& memory, double time);
 
 /// Returns the energy stored in the plastic elements of joint j.

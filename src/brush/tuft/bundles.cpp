@@ -65,7 +65,7 @@ double with_area_below(double part) {
     return table[k] + (at - k) * (table[k + 1] - table[k]);
 }
 
-/// The unit disc of which equal parts of the square |x|, |y| ≤ 1 make equal parts (Shirley and Chiu 1997).
+/// The unit disc of which equal parts of the square |x|, |y| ≤ 1 make equal parts [Shirley1997].
 Vec2 disc_of_square(const Vec2& at) {
     if (at.x == 0 && at.y == 0) return at;
     const bool wide = std::abs(at.x) > std::abs(at.y);

@@ -64,7 +64,7 @@ Vec2 place_of(const Bundles& bundles, const Bristle& bristle);
 /// −e to +e, and each strip is mapped to a disc. Order and fractions of the hair are preserved. For one branch it is
 /// the identity. A strip of a wide ferrule is mapped to the rectangle of equal area about the disc's middle,
 /// half-widths √π/2: side by side the rectangles of neighbours leave no gap. A sector of a ring is mapped to a disc of
-/// equal area too, its outer rim towards +x (Shirley and Chiu 1997).
+/// equal area too, its outer rim towards +x [Shirley1997].
 struct BranchPlace {
     int branch = 0;
     Vec2 place{0};

@@ -53,7 +53,7 @@ double face_depth(const Preset& p, double r) {
     return depth;
 }
 
-/// The unit square onto the unit disc, area for area (Shirley and Chiu 1997).
+/// The unit square onto the unit disc, area for area [Shirley1997].
 Vec2 disc_point(double a, double b) {
     if (a == 0 && b == 0) return Vec2{0};
     if (std::abs(a) > std::abs(b)) {

@@ -15,7 +15,7 @@
 ///     σ(ε) = E* (ε_D + (1 − ε_D) ((1 − ε_D)/(1 − ε) − 1))           beyond: cells are shut
 ///     F = ∫ σ dA n,   volume lost = ∫ δ dA,
 ///
-/// with φ the solid part (Gibson and Ashby 1997, 5.3 and 5.15). A flat face of area A gives F = E* A d/H, a dome of
+/// with φ the solid part ([Gibson1997], 5.3 and 5.15). A flat face of area A gives F = E* A d/H, a dome of
 /// radius R gives E* π R d²/H (d much less than R). The form beyond ε_D is ours: it has no kink and no limit.
 /// Layers of a column shrink by 1 − δ/h, h its own height; it does not bulge (Poisson's ratio of open cells is near 0
 /// in large compression).

@@ -19,7 +19,7 @@
 /// thin end. With κ = κ0 and even r the operator is κ (1 − λ² d²/dx²)²: a push at one node spreads over about λ and
 /// never pulls inward. Boundary conditions: u = u' = 0 at the ferrule, free at the tip. A side node beyond its wall
 /// at distance c_i is pushed back with stiffness κ_w. Solution: banded L D Lᵀ, repeated while the set of nodes at
-/// walls changes, at most kWallPasses times. Source: Chu and Tai 2002, 4.1.1 and 4.2.2 (lateral nodes, stretch and
+/// walls changes, at most kWallPasses times. Source: [Chu2002], 4.1.1 and 4.2.2 (lateral nodes, stretch and
 /// bend springs).
 namespace tuft::brush {
 

@@ -23,7 +23,7 @@
 /// taken at s = 0, 1/3, 2/3 and 1. Exact for affine motions of all layers: Bernstein polynomials reproduce linear
 /// functions.
 ///
-/// Source: Van Laerhoven and Van Reeth 2007, 3.3 (Sederberg and Parry 1986). There one lattice spans the whole tuft; it
+/// Source: [VanLaerhoven2007], 3.3 [Sederberg1986]. There one lattice spans the whole tuft; it
 /// smooths a spine that bends near its tip, so here each segment has its own.
 namespace tuft::brush {
 

@@ -9,7 +9,7 @@
 /// \file
 /// Query table over the root bending moment and the Fixed Shape Method: the tuft's shape for a moment M, rotated in
 /// the bending plane until the tip touches the surface. Shapes are large-deflection elastica under a transverse tip
-/// load, for any stiffness profile. Source: variable stiffness brush (Huang and Hou 2018); the shapes are exact
+/// load, for any stiffness profile. Source: [Huang2018]; the shapes are exact
 /// here.
 namespace tuft::brush {
 

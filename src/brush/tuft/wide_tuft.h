@@ -20,7 +20,7 @@
 /// k_n is that of a layer of hair of the height t and the thickness p, the pitch of the spines: the coupling of the
 /// whole row does not depend on their number. W is Dupré's work of two new faces; t is the thickness of the hair at the
 /// node, so that a thin edge holds little, or in a ring the width of the face there. p_c is the suction in the film: of
-/// the hanging column of ink, and of the menisci between hairs that are not full (Princen 1968). The least g_b keeps
+/// the hanging column of ink, and of the menisci between hairs that are not full [Princen1969]. The least g_b keeps
 /// the film's bond stable: its work is at least twice what contact takes of it.
 ///
 /// Spread hair of two neighbours meets with the stiffness of both side springs in series (tuft_sections.h).

@@ -45,7 +45,7 @@ double parabola_slope(double before, double after, double h_before, double h_aft
     return (h_after * before + h_before * after) / (h_before + h_after);
 }
 
-/// The same, limited so that the cubic is monotone where the nodes are (Fritsch and Carlson 1980).
+/// The same, limited so that the cubic is monotone where the nodes are [Fritsch1980].
 double monotone_slope(double before, double after, double h_before, double h_after) {
     if (!(before * after > 0)) return 0;
     const double most = 3 * std::min(std::abs(before), std::abs(after));

@@ -10,7 +10,7 @@ constexpr int kWithin = 6;  // cells of the coarse picture that the rounded edge
 constexpr float kFar = 1e9f;
 
 /// Distances along lines of squared ones, [n] with a stride: min over q of (p − q)² + f(q). The
-/// lower envelope of parabolas (Felzenszwalb and Huttenlocher 2012).
+/// lower envelope of parabolas [Felzenszwalb2012].
 class Envelope {
   public:
     explicit Envelope(int longest) : line_(longest), from_(longest), border_(longest + 1) {}

@@ -229,7 +229,7 @@ struct Walk {
     }
 
     /// Computes distance and angle from two settled neighbours with the source between them (geodesic polar
-    /// coordinates, Melvær and Reimers 2012): the circles of their distances meet in the unfolded source, and angles at
+    /// coordinates [Melvaer2012]): the circles of their distances meet in the unfolded source, and angles at
     /// it are in proportion to angles at the origin. Where the surface curves, adding up hops would turn the cluster by
     /// the curvature that they enclose.
     void place_by_polar(std::span<const Hint> hints, const atlas::TexelCluster& cluster, PlanScratch::Node& n) {

@@ -100,7 +100,7 @@ struct Substrate {
     float relief_length = 60e-6f;  ///< correlation length of the grain, metres
     float absorbency = 0.2f;       ///< rate of absorption of the water on it, 1/s
     float pores = 2;               ///< capacity of its pores, film units of water
-    /// r, metres: radius of tubes that draw as its pores do, by their rate of rise (Washburn 1921); less than their
+    /// r, metres: radius of tubes that draw as its pores do, by their rate of rise [Washburn1921]; less than their
     /// width, since paths through pores wind and end. 0: `diffusion` holds in the pores too.
     float pore_radius = 0;
     float contact_angle = 0;        ///< θ of water on its pores, degrees, below 90

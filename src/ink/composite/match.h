@@ -58,8 +58,8 @@ struct ColourMatch {
 /// on the bounds goes on, on the three terms of ΔE2000, and from the best of these with a fourth
 /// pigment each. What is still no match ends with a compass search. Fewer pigments win where they
 /// are as good (`kSameColour`).
-/// Source: Kubelka & Munk 1931; computer colour matching in this form: Allen 1966 and 1974;
-/// ΔE: Sharma, Wu, Dalal 2005; Levenberg–Marquardt: Marquardt 1963.
+/// Source: [Kubelka1931]; computer colour matching in this form: [Allen1966];
+/// ΔE: [Sharma2005]; Levenberg–Marquardt: [Marquardt1963].
 class MixSearch {
   public:
     /// At least one pigment, at most `kMostCandidates`; `film` > 0. Throws `Error` otherwise. About

@@ -144,7 +144,7 @@ struct Drain {
 
 /// Returns the liquid, film·m², that runs off a touching tuft in `dt` seconds: part of the content beyond the
 /// capacity, which capillarity does not hold. It is a film of thickness δ = V / (π R L) that drains by its weight,
-/// dV/dt = −2 π R slope ρ g δ³ / 3 μ (Jeffreys 1930), so
+/// dV/dt = −2 π R slope ρ g δ³ / 3 μ [Jeffreys1930], so
 ///
 ///     V(t) = V / √(1 + 2 c V² t),   c = 2 π R slope ρ g / (3 μ (π R L)³).
 ///

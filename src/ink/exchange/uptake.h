@@ -17,11 +17,11 @@ struct Uptake {
 ///
 ///     8 η h h'/r² = 2 γ/r − slope ρ g h,
 ///
-/// so that h² = γ r t/(2 η) at first or lying (Lucas 1918, Washburn 1921), and never more than 2 γ/(slope ρ g r) (Jurin
-/// 1718). Relative error 1e-9.
+/// so that h² = γ r t/(2 η) at first or lying ([Lucas1918], [Washburn1921]), and never more than 2 γ/(slope ρ g r)
+/// [Jurin1718]. Relative error 1e-9.
 double uptake_height(const Uptake& uptake, double seconds);
 
-/// Returns the radius of a tube with the suction of packed hair, metres: (1 − φ) d/(2 φ) (Princen 1968), with the
+/// Returns the radius of a tube with the suction of packed hair, metres: (1 − φ) d/(2 φ) [Princen1969], with the
 /// diameter d of a hair and the part φ = 0.55 of the tuft that is hair.
 double pore_radius_of(double hair_diameter);
 

@@ -15,9 +15,9 @@ namespace tuft::ink::wet {
 ///
 ///     R < R_c = 2 l √(θ / (π sin α)),   l² = σ / ρ g
 ///
-/// times the roughness of the place (`grain`). Moving contact lines hold less (Gao et al. 2018, Nature Physics 14,
-/// 191: on every surface they tried). Here the factor is 0.65, a choice: a running bead stops at R < R_k = √0.65
-/// R_c. Its speed is bead_speed ((R / R_k)² − 1), at most 1.5 bead_speed (Le Grand, Daerr, Limat 2005: linear in
+/// times the roughness of the place (`grain`). Moving contact lines hold less ([Gao2018]: on every surface
+/// they tried). Here the factor is 0.65, a choice: a running bead stops at R < R_k = √0.65
+/// R_c. Its speed is bead_speed ((R / R_k)² − 1), at most 1.5 bead_speed ([LeGrand2005]: linear in
 /// the weight beyond the critical one).
 ///
 /// A running bead takes up liquid above `retained` on its path, with its pigments, and draws in liquid above `retained`

@@ -43,7 +43,7 @@ class Fibres {
 
 /// Relative ease with which liquid flows at places of a surface: exp(unevenness n), n noise of mean 0 and rms 1, −2 to
 /// 1.2. n is of clouds, over 0.6 to 2.4 mm, and of fibres, which have the part `fibrous` of its square. On a plane the
-/// effective large-scale mobility is the geometric mean, 1 (Dykhne 1971).
+/// effective large-scale mobility is the geometric mean, 1 [Dykhne1971].
 class EaseOfFlow {
   public:
     EaseOfFlow(const FlowMedium& medium, double texel_size);

@@ -48,7 +48,7 @@ struct FilmParams {
 };
 
 /// Returns k = r σ cos θ / (2 η), m²/s: the square of the length of a front in pores of radius r (m) over time, with
-/// contact angle θ (radians), σ (N/m) and η (Pa s) (Lucas 1918, Washburn 1921).
+/// contact angle θ (radians), σ (N/m) and η (Pa s) ([Lucas1918], [Washburn1921]).
 double washburn(double pore_radius, double contact_angle, double tension, double viscosity);
 
 /// Returns the parameters of a substrate (diffusion, threshold, edge, absorbency, pores, pore radius, contact angle,
@@ -80,7 +80,7 @@ struct FilmReport {
 /// Levelling. Surface tension levels ripples of the liquid on the surface by the law of thin films, to which the above
 /// adds what thin-film theory does not know (fibres, roughness):
 ///
-///     ∂w/∂t = −∇·(w³ / (3 η) ∇(σ ∇² w)),    so that a ripple decays at the rate σ w³ k⁴ / (3 η) (Orchard 1962)
+///     ∂w/∂t = −∇·(w³ / (3 η) ∇(σ ∇² w)),    so that a ripple decays at the rate σ w³ k⁴ / (3 η) [Orchard1962]
 ///
 /// Ripples of less than 1 % of the thickness stay, beside contact lines of less than 3 to 10 %. Contact lines hold:
 /// texels within two of liquid no thicker than `held` neither give nor take. On steep places nothing levels that is no
@@ -107,7 +107,7 @@ struct FilmReport {
 /// exceed their capacity. None is shorter than `shortest_step`. There no face passes more than an eighth of a
 /// texel. Where the surface is wet throughout, the excess flows between blocks of 4 × 4 texels, for which the same
 /// step is 16 times smaller relative to stability. Blocks end at seams: among the tiles there the step is divided as
-/// stability needs, half of it before and half after the other flows (Strang 1968).
+/// stability needs, half of it before and half after the other flows [Strang1968].
 ///
 /// Cost: 10 to 16 ns per texel and step with four pigments, depending on the fraction sheared and beside seams; two
 /// thirds are sums in the first-level cache. A step of levelling costs 80 to 130 ns per texel of tiles with ripples.

@@ -30,7 +30,7 @@ struct FurrowOptions {
 
 /// Returns the furrow profile of the bundles, with the ridges at both sides, limited by the paste's yield stress.
 /// Surface tension σ levels a wave of amplitude a and wavenumber k on a film h with the shear stress σ k³ a h at
-/// its base (Orchard 1962). A paste that yields at τ stops at
+/// its base [Orchard1962]. A paste that yields at τ stops at
 ///
 ///     a ≤ τ / (σ k³ h),   σ = 30 mN/m,
 ///
@@ -91,12 +91,12 @@ struct Rub {
 };
 
 /// Returns the film units of paste loosened by rubbing. Contact is plastic: its area carries the load at the
-/// pressure (2 + π) τ at which a flat punch sinks in (Prandtl 1920). Of the sliding contact the fraction K wears
-/// off (Archard 1953):
+/// pressure (2 + π) τ at which a flat punch sinks in [Prandtl1920]. Of the sliding contact the fraction K wears
+/// off [Archard1953]:
 ///
 ///     h = K p L / ((2 + π) τ),   K = 1e-3
 ///
-/// (brass on steel 6e-4, mild steel on itself 7e-3: Archard and Hirst 1956; for hair on paint a choice between
+/// (brass on steel 6e-4, mild steel on itself 7e-3: [Archard1956]; for hair on paint a choice between
 /// them). A soft brush of 1.4 kPa removes 5 to 11 µm, for any thickness of paste.
 double loosened(const Rub& rub);
 

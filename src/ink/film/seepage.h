@@ -13,7 +13,7 @@
 /// Flow of liquid through the pores. Internal to the wet film (film.h).
 namespace tuft::ink::wet {
 
-/// m: D ∝ S^m with saturation S. Of drops in paper the area grows as V^⅔ (σ t / η)^⅓ (Gillespie 1958, Kissa 1981),
+/// m: D ∝ S^m with saturation S. Of drops in paper the area grows as V^⅔ (σ t / η)^⅓ ([Gillespie1958], [Kissa1981]),
 /// which is Barenblatt's solution for m = 2.
 inline constexpr int kSaturationPower = 2;
 /// ξ: where liquid is supplied, the front is at ξ √(D₀ t). From (S² S′)′ = −½ ξ S′, S(0) = 1.
@@ -75,14 +75,14 @@ void limit_carried(SeepTile& tile, const Geometry& g, int last, const Plane& rat
 void seepage_flow(Work& work, const SeepTile& tile, const Geometry& g, int last, const Field& carried);
 
 /// Draws liquid from the surface into the pores of a set of tiles, and moves it through them: unsaturated Darcy flow
-/// (Richards 1931) with
+/// [Richards1931] with
 ///
 ///     ∂s/∂t = ∇·(D₀ S² ∇s) + a w (1 − S),   ∂w/∂t = −a w (1 − S),   S = s / pores,   D₀ = k / ξ²,
 ///
 /// so that a front fed from full pores is at √(k t): Lucas and Washburn's law with k = r σ cos θ / (2 η). S² makes the
 /// front sharp. The flux through a face is g D₀ pores (S₀³ − S₁³) / 3.
 ///
-/// Explicit in stages, by a Runge–Kutta–Gegenbauer method of first order (O'Sullivan 2019): n stages are stable and
+/// Explicit in stages, by a Runge–Kutta–Gegenbauer method of first order [OSullivan2019]: n stages are stable and
 /// keep amounts within their bounds for steps (n² + 3 n) / 4 times as long as one stage. Stages are sums of what went
 /// through faces and surface, so amounts are conserved to rounding. A step with a negative amount is halved.
 ///

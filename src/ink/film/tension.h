@@ -116,7 +116,7 @@ Carried flow_over_link(const TensionLink& link, const std::array<float, 2>& w, c
 /// Looks for places where liquid thicker than `held` is curved as ripples are.
 Ripples find_ripples(const Field& w, const Geometry& g, float held);
 
-/// Levels a set of tiles: thin-film theory for small slopes (Reynolds 1886; ripples: Orchard 1962),
+/// Levels a set of tiles: thin-film theory for small slopes ([Reynolds1886]; ripples: [Orchard1962]),
 ///
 ///     ∂w/∂t = −∇·(w³ / (3 η) ∇(σ ∇² w)),
 ///

@@ -20,7 +20,7 @@ using Xyz = std::array<double, 3>;
 using Lab = std::array<double, 3>;
 
 /// Tristimulus values of a reflectance under D65, CIE 1931 2° observer, sums over 10 nm;
-/// Y of a perfect white is 1. Source: CIE 15, tables T.1 and T.4.
+/// Y of a perfect white is 1. Source: [CIE2004], tables T.1 and T.4.
 Xyz xyz_of_spectrum(const Spectrum& reflectance);
 
 /// Linear sRGB (IEC 61966-2-1), each channel scaled so that a perfect white is exactly 1;
@@ -41,7 +41,7 @@ Lab lab_of_rgb(const std::array<double, 3>& linear_rgb);
 std::array<double, 3> rgb_of_lab(const Lab& lab);
 
 /// The terms of CIEDE2000 with unit weights: ΔE² = l² + c² + h² + r c h.
-/// Source: Sharma, Wu, Dalal 2005, equations 2 to 22.
+/// Source: [Sharma2005], equations 2 to 22.
 struct ColourDifference {
     double l = 0, c = 0, h = 0;  ///< ΔL'/S_L, ΔC'/S_C, ΔH'/S_H
     double r = 0;                ///< R_T, in (−2, 0]

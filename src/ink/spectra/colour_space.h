@@ -13,7 +13,7 @@
 /// writers of `io`.
 ///
 /// With N the matrix of a space's linear RGB to XYZ, by its chromaticities and white, and A the Bradford adaptation of
-/// whites (ICC.1:2010, annex E; Lam 1985), RGB' = N'⁻¹ A N RGB.
+/// whites (ICC.1:2010, annex E; [Lam1985]), RGB' = N'⁻¹ A N RGB.
 namespace tuft::ink {
 
 enum class ColourSpace {

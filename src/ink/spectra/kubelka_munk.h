@@ -4,8 +4,8 @@
 
 /// \file
 /// Kubelka–Munk optics of one wavelength band: the appearance of an absorbing and scattering film over a substrate.
-/// Diffuse light, no fluorescence. Used by composite.h and match.h. Source: Kubelka & Munk 1931; Kubelka 1948
-/// (layers), 1954 (stacks); Saunderson 1942.
+/// Diffuse light, no fluorescence. Used by composite.h and match.h. Source: [Kubelka1931],
+/// [Kubelka1948] (layers), [Kubelka1954] (stacks), [Saunderson1942].
 ///
 /// K and S are absorption and scattering per film unit. X is the thickness in film units (one unit is 10 µm of wet
 /// ink, about 5 g/m² when dry). Reflectances and transmittances are linear, in [0, 1]. Every function is finite for

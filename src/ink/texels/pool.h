@@ -30,7 +30,7 @@ Plane dry_relief(const Canvas& canvas, std::uint32_t slot);
 
 /// Settles the ink that a stroke added to the open films since `before` on the relief of the paint below. Surface
 /// tension and gravity level a film thinner than the capillary length (2.7 mm) within milliseconds where the slope
-/// drives it (Orchard 1962: time constant 3 η λ⁴ / (σ h³ (2π)⁴), 5 ms for λ = 0.5 mm, h = 20 µm, η = 10 mPa s); a
+/// drives it ([Orchard1962]: time constant 3 η λ⁴ / (σ h³ (2π)⁴), 5 ms for λ = 0.5 mm, h = 20 µm, η = 10 mPa s); a
 /// film held by the wall does not move. With z the relief and T the film, in each step
 ///
 ///     F = n min(⟨T − ridge_film⟩, ⟨z + T − z' − T'⟩) / 5   from texel to lower texel,

@@ -6,7 +6,7 @@
 #include "core/geometry/types.h"
 
 /// \file
-/// Flat areas bounded by closed rings. Union and inset are by the Clipper library (after Vatti 1992). Called by
+/// Flat areas bounded by closed rings. Union and inset are by the Clipper library (after [Vatti1992]). Called by
 /// area_lines.cpp. Any thread.
 namespace tuft::io {
 

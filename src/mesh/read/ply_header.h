@@ -5,7 +5,7 @@
 #include <vector>
 
 /// \file
-/// Header of a PLY file (Turk 1994): its elements and the layout of their rows. Used by the PLY reader only.
+/// Header of a PLY file [Turk1994]: its elements and the layout of their rows. Used by the PLY reader only.
 namespace tuft::mesh {
 
 enum class PlyFormat { kAscii, kLittleEndian, kBigEndian };

@@ -20,7 +20,7 @@ struct EarBudget {
 
 /// Appends n−2 triangles as triples of positions in `corners` (0 ... n−1), with the polygon's winding; none for n <
 /// 3. A quad is cut along the diagonal that leaves both halves on its side, the shorter one if both do. Longer
-/// polygons are cut by ear clipping (Meisters 1975) in the plane of their Newell normal, shortest cut first.
+/// polygons are cut by ear clipping [Meisters1975] in the plane of their Newell normal, shortest cut first.
 /// Concave and keyhole polygons give correct results. A self-intersecting polygon still gives n−2 triangles.
 void triangulate(std::span<const Vec3> corners, EarBudget& budget,
                  std::vector<std::array<std::uint32_t, 3>>& triangles);

@@ -21,7 +21,7 @@ struct Glass {
 };
 
 /// Draws the model as `render_picture` does, and what is behind glass through it. With τ the transmission of the point
-/// that a ray meets first, F(θ) its Fresnel reflectance (Schlick 1994, F0 = 0.04) and c its colour as an opaque
+/// that a ray meets first, F(θ) its Fresnel reflectance ([Schlick1994], F0 = 0.04) and c its colour as an opaque
 /// surface,
 ///
 ///     seen = (1 − t) opaque + t c behind,    t = τ (1 − F(θ)),

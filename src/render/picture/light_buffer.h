@@ -78,8 +78,8 @@ LightBuffer fill_light_buffer(const Scene& scene, const LightCache& cache, const
 /// single ray that met a bright spot leaves no speck.
 void remove_specks(LightBuffer& buffer, const Camera& camera);
 
-/// Edge-stopping à-trous smoothing (Dammertz et al. 2010; variance-guided as in Schied et
-/// al. 2017) of both parts of the light. `variance`: of the mean of each part, per pixel.
+/// Edge-stopping à-trous smoothing ([Dammertz2010]; variance-guided as in
+/// [Schied2017]) of both parts of the light. `variance`: of the mean of each part, per pixel.
 void smooth_light(LightBuffer& buffer, std::vector<Vec2f>& variance, const Camera& camera);
 
 }  // namespace tuft::render

@@ -14,7 +14,7 @@
 namespace tuft::render {
 
 /// Point i of Sobol's two-dimensional sequence, in [0,1)². Any first 2^k points are
-/// stratified in all elementary intervals (Sobol 1967; Kollig and Keller 2002).
+/// stratified in all elementary intervals ([Sobol1967]; [Kollig2002]).
 inline Vec2f sobol_point(std::uint32_t i) {
     std::uint32_t x = i;
     x = (x << 16) | (x >> 16);
@@ -52,7 +52,7 @@ inline Vec2f wrap(const Vec2f& p) {
     return p - glm::floor(p);
 }
 
-/// Uniform points of the square to the unit disc, area preserving (Shirley and Chiu 1997).
+/// Uniform points of the square to the unit disc, area preserving [Shirley1997].
 inline Vec2f square_to_disc(const Vec2f& s) {
     const float a = 2 * s.x - 1, b = 2 * s.y - 1;
     if (a == 0 && b == 0) return {0, 0};
@@ -65,7 +65,7 @@ inline Vec2f square_to_disc(const Vec2f& s) {
     return {b * std::cos(phi), b * std::sin(phi)};
 }
 
-/// Two unit vectors that complete `n` to a right-handed frame (Duff et al. 2017).
+/// Two unit vectors that complete `n` to a right-handed frame [Duff2017].
 inline void complete_frame(const Vec3f& n, Vec3f& t, Vec3f& b) {
     const float sign = std::copysign(1.0f, n.z);
     const float a = -1 / (sign + n.z), c = n.x * n.y * a;

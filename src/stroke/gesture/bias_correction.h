@@ -12,7 +12,7 @@
 /// \file
 /// A writer's bias: the difference of the strokes that they write from those that they mean, learned from pairs and
 /// corrected in later strokes. Called by `tuft bias` and `tuft paint --bias`. Source: the user manipulability component
-/// of Xu et al. 2004, here with ratios for pressure and differences for position and tilt: independent of the origin,
+/// of [Xu2004], here with ratios for pressure and differences for position and tilt: independent of the origin,
 /// and finite where the pen barely touches.
 namespace tuft::stroke {
 

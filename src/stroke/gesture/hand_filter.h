@@ -11,7 +11,7 @@
 /// the same bits.
 namespace tuft::stroke {
 
-/// One-Euro filter (Casiez, Roussel and Vogel 2012): exponential smoothing whose cutoff
+/// One-Euro filter [Casiez2012]: exponential smoothing whose cutoff
 /// frequency rises with the speed of the signal,
 ///
 ///     x̂' = (x − x̂) / τ,  τ = 1 / (2π f),  f = cutoff + beta |v̂|

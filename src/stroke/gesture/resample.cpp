@@ -44,7 +44,7 @@ Vec3 catmull_rom(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec3& p3,
 
 /// Part of the time from b to c that has passed at the part s of the spline between them: Hermite's
 /// cubic over the spline's own knots, with the slopes of the parabolas through three of them, no
-/// steeper than keeps it rising (Fritsch and Carlson 1980).
+/// steeper than keeps it rising [Fritsch1980].
 double time_between(const Pose& a, const Pose& b, const Pose& c, const Pose& d, double s) {
     constexpr double kSteepest = 3;  // of the mean
     const double h = c.time - b.time;

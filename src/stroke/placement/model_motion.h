@@ -31,7 +31,7 @@ struct ModelMotion {
     Vec3 operator()(const Vec3& p) const { return to + linear() * (p - from); }
     Vec3 back(const Vec3& p) const { return from + glm::inverse(linear()) * (p - to); }
     Mat3 linear() const { return scale * (glm::mat3_cast(rotation) * stretch); }
-    /// Sets rotation, scale and stretch from L by its polar decomposition (Higham 1986). Precondition: the determinant
+    /// Sets rotation, scale and stretch from L by its polar decomposition [Higham1986]. Precondition: the determinant
     /// is positive.
     void set_linear(const Mat3& linear);
 };

@@ -41,7 +41,7 @@ struct SurfaceTrace {
 ///
 /// `SurfaceMapping::wrap` is the exponential map of the polyhedral surface at the point nearest to the placement's
 /// origin. Sample (x, y) lies at distance |(x, y)| along the straightest geodesic in the direction x right + y down
-/// (Polthier and Schmies 1998: it crosses an edge straight in the unfolded plane); its frame is parallel transported
+/// ([Polthier1998]: it crosses an edge straight in the unfolded plane); its frame is parallel transported
 /// along it. Lengths and angles at the origin are preserved; on a developable surface all of them are.
 ///
 /// `SurfaceMapping::drape` is the same map on the smoothed surface: at each step a patch is fitted to the surface

@@ -7,8 +7,8 @@
 #include "stroke/placement/model_motion.h"
 
 /// \file
-/// Registration of two surfaces by iterated closest points (Besl and McKay 1992), point to plane (Chen and Medioni
-/// 1992), trimmed (Chetverikov et al. 2002). Called by model_motion.h.
+/// Registration of two surfaces by iterated closest points [Besl1992], point to plane
+/// [Chen1992], trimmed [Chetverikov2002]. Called by model_motion.h.
 namespace tuft::stroke {
 
 /// A point of a surface with its smooth unit normal; metres.

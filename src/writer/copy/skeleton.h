@@ -34,7 +34,7 @@ struct Skeleton {
 
 /// Returns the centre lines of an area.
 ///
-/// Thinned by Guo and Hall (1989), "Parallel thinning with two-subiteration algorithms", CACM 32, 359. Twigs that a
+/// Thinned as [Guo1989] do. Spurs that a
 /// disc about their junction nearly covers are no strokes: they end within 1.8 of its radius. Junctions closer than 1.2
 /// of the larger radius are one. Pieces are cut at corners (`make_stroke_line`, over at
 /// least 1.3 half widths). Free ends are continued straight to 12

@@ -20,7 +20,7 @@ struct BrushHand {
     double unit = 1e-4;  ///< metres per unit of the character
 };
 
-/// Pace of a hand, by the two-thirds law (Lacquaniti, Terzuolo and Viviani 1983):
+/// Pace of a hand, by the two-thirds law [Lacquaniti1983]:
 ///
 ///     v = speed · min(1, (κ · radius)^(−1/3)) · e,
 ///

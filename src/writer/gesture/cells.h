@@ -35,7 +35,7 @@ Cells cells_over(std::span<const Ring> rings, double cell, double margin);
 void fill(Cells& cells, std::span<const Ring> rings);
 
 /// Returns the distance of each cell's centre to the nearest centre outside of the area, units; 0 outside. [cells]
-/// Exact Euclidean distance (Felzenszwalb and Huttenlocher 2012), O(cells).
+/// Exact Euclidean distance [Felzenszwalb2012], O(cells).
 std::vector<float> clearances(const Cells& cells);
 
 }  // namespace tuft::writer
