@@ -17,10 +17,10 @@ struct GuideRequest {
     const decal::Sheet& sheet;
 };
 
-/// Writes into `folder`, which is made where it is missing: `piece-NN.png`, the model seen straight on to that piece,
-/// its cut line, number and arrow drawn on it, those of the others fainter; `overview.png`; and `lines.obj`, the cut
-/// lines and arrows on the surface as polylines in unit and axes of the model's file, to be projected or drawn on the
-/// clay. Returns the paths. Throws `Error`; then nothing is written.
+/// Writes the guide into `folder` and creates the folder where it is missing. `piece-NN.png` shows the model straight
+/// on to one piece, with its cut line, number and arrow; those of the other pieces are fainter. `overview.png` shows
+/// all pieces. `lines.obj` has the cut lines and arrows as polylines on the surface, in unit and axes of the model's
+/// file, to be projected or drawn on the clay. Returns the paths. Throws `Error`; then nothing is written.
 std::vector<std::filesystem::path> write_placing_guide(const std::filesystem::path& folder, const GuideRequest& request,
                                                        Console& console);
 

@@ -35,14 +35,13 @@ struct FlatPanel {
 
 /// Lays a disk (metres) flat at true size. Developable panels are unrolled triangle by triangle: exact to rounding.
 /// Others are laid out as rigid as possible [Liu2008]: Σ area Σ_k (1/σ_k − 1)² is least. Where that strains a triangle
-/// by more than `limit`, strain is moved to its neighbours until no triangle exceeds it: the target of each triangle is
-/// its map with both stretches clamped into 1 ± limit, and a global step takes all vertices to the mean of the targets
-/// (strain limiting by local and global steps, [Bouaziz2014]). Ends early where the least mean of the strain
-/// already rules the limit out. Cost: about 0.3 s for 10,000 triangles.
+/// by more than `limit`, local and global steps move strain to its neighbours until no triangle exceeds the limit
+/// [Bouaziz2014]. The local step clamps both stretches of each triangle into 1 ± limit. The global step takes all
+/// vertices to the mean of these targets. Ends early where the least mean of the strain already rules the limit out.
+/// Cost: about 0.3 s for 10,000 triangles.
 ///
-/// On a spherical cap of angular radius α the least possible strain is (k − 1)/(k + 1) with k = α / sin α
-/// ([Milnor1969]: no map of the cap has a smaller ratio k of its greatest scale to its least); `limit` = 1.1 times
-/// that is met.
+/// On a spherical cap of angular radius α the least possible strain is (k − 1)/(k + 1) with k = α / sin α: no map of
+/// the cap has a smaller ratio k of its greatest scale to its least [Milnor1969]. A `limit` of 1.1 times that is met.
 FlatPanel lay_flat(const atlas::ChartMesh& chart, double limit);
 
 }  // namespace tuft::decal

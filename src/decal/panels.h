@@ -29,12 +29,12 @@ struct Panel {
 
 /// Cuts `film` into panels that are as large as the limits allow.
 ///
-/// 1. A connected part that is no disk, strains the film by more than the limit or fits no page is cut in two by a
-///    plane: of 24 directions through its two longer axes and 7 positions in its middle third the one with the least
-///    visible cut, ∫ (0.15 + coverage) ds. So cuts run between motifs where they can. Where the angles at a vertex miss
-///    2π by more than 0.3, the plane goes through the sharpest such vertex.
-/// 2. Neighbours are joined again along one connected seam, the most visible one first, where the whole still lies
-///    flat within the limits. In the end no two panels can be joined.
+/// 1. A connected part is cut in two by a plane where it is no disk, strains the film by more than the limit, or fits
+///    no page. Of 24 directions through its two longer axes and 7 positions in its middle third the plane with the
+///    least visible cut is taken, ∫ (0.15 + coverage) ds. So cuts run between motifs where they can. Where the angles
+///    at a vertex miss 2π by more than 0.3, the plane goes through the sharpest such vertex.
+/// 2. Neighbours are joined again along one connected seam, the most visible one first, where the whole still lies flat
+///    within the limits. In the end no two panels can be joined.
 ///
 /// Panels are in the order of their centres' azimuth about the middle of the film, from −y counter-clockwise, then from
 /// above. Throws `Error` where a part cannot be laid flat at all. The same bits for any number of threads.

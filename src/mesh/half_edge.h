@@ -8,11 +8,11 @@
 /// opposite half-edge, or to kNone on a border.
 ///
 /// OpenMesh holds a surface only where its edges are flipped and its borders are counted (surface_topology.h). To
-/// compare, `unwrap` was run with each of its patches in OpenMesh: opposite, next, previous and vertex read there, and
-/// two tables between its half-edges, which are numbered by edges, and corners, by which normals, UVs and seams are
-/// stored. The atlas is the same to the bit. It takes 1.09 times as long for models/plate.ply (48,600 triangles), 1.11
-/// times for models/car.ply (119,680) and 1.19 times for a torus of 1,000,000 triangles, with 472 MiB at most against
-/// 412 (processor time in one run, by turns; three turns of the car agree within 1 %).
+/// compare, `unwrap` was run with each of its patches in OpenMesh. Two tables connect its half-edges, which are
+/// numbered by edges, with corners, by which normals, UVs and seams are stored. The atlas is the same to the bit.
+/// Processor time in one run, by turns: 1.09 times as long for models/plate.ply (48,600 triangles), 1.11 times for
+/// models/car.ply (119,680), 1.19 times for a torus of 1,000,000 triangles. Memory: 472 MiB at most against 412. Three
+/// turns of the car agree within 1 %.
 namespace tuft::mesh {
 
 /// The half-edge after h in its triangle.

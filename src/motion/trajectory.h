@@ -58,11 +58,11 @@ struct MotionOptions {
 /// Distance of brush and holder from the model in travel, metres, at least.
 inline constexpr double kTravelGap = 0.003;
 
-/// Returns the trajectory of strokes in their order. A stroke's path is its own; points that lie within 5 µm and 0.1°
-/// of the line between their neighbours are left out. Travel is straight where the whole tool stays `kTravelGap` clear
-/// of the model, sampled each 2 mm by closest points (Embree); else it goes out along the axis, round the model on a
-/// sphere, over the top where that would pass below it, and in again. Throws `Error` that names the stroke where the
-/// holder would hit the model, or no clear path leads to it.
+/// Returns the trajectory of strokes in their order. A stroke's path is its own, without points within 5 µm and 0.1° of
+/// the line between their neighbours. Travel is straight where the whole tool stays `kTravelGap` clear of the model,
+/// sampled each 2 mm by closest points (Embree). Else it goes out along the axis, round the model on a sphere, and in
+/// again; it goes over the top where the sphere's path would pass below the model. Throws `Error` that names the stroke
+/// where the holder would hit the model, or no clear path leads to it.
 Trajectory plan(const mesh::SurfaceQuery& query, const std::vector<StrokePath>& strokes, const MotionOptions& options);
 
 }  // namespace tuft::motion

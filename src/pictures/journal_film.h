@@ -33,11 +33,11 @@ struct FilmLength {
 /// Returns the length of a film. Throws `Error` where nothing is painted or it would last more than ten hours.
 FilmLength measure_film(const std::vector<stroke::JournalEntry>& entries, const FilmOptions& options);
 
-/// Paints the entries with `painting`, which has no journal yet, and gives the frames to `sink`: frame k of n shows the
-/// state after k/(n − 1) of the work, the last one the finished work, to the bit as `render_with_glass` draws it from
-/// the path's end. Where the camera stands only the pixels that read a changed tile are drawn anew. Frames from which
-/// it moves on have fewer rays and interpolated light (`PictureOptions::light_step`). The same frames for any number of
-/// threads. Throws what `sink` throws, and `Cancelled`.
+/// Paints the entries with `painting`, which has no journal yet, and gives the frames to `sink`. Frame k of n shows the
+/// state after k/(n − 1) of the work. The last frame shows the finished work, to the bit as `render_with_glass` draws
+/// it from the path's end. Where the camera stands only the pixels that read a changed tile are drawn anew. Frames from
+/// which it moves on have fewer rays and interpolated light (`PictureOptions::light_step`). The same frames for any
+/// number of threads. Throws what `sink` throws, and `Cancelled`.
 void film_journal(stroke::Document& painting, std::vector<stroke::JournalEntry> entries, const FilmOptions& options,
                   io::FilmSink& sink);
 

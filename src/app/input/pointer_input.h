@@ -144,7 +144,7 @@ class PointerInput {
     bool wide_;                      ///< the ferrule is wider than thick
     stroke::RollFollower follower_;  ///< of the stroke, with `roll_follow`
     double reach_;                   ///< metres, radius in which gaps are bridged
-    double bridged_ = -1;            ///< `time_` when the goal was last over a gap; negative: never
+    double bridged_ = -1;            ///< `motion_.time` when the goal was last over a gap; negative: never
     bool down_ = false;
     std::optional<bool> on_back_;   ///< of the surface, where it was set down
     bool over_edge_ = false;        ///< the cursor crossed an edge of the outline since it was pressed

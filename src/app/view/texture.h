@@ -23,9 +23,9 @@ struct TexelUpdate {
 };
 
 /// The shown texture, updated tile by tile: sRGB colour and coded ink height (`render::code_of_height`). Gutters
-/// continue over seams. A coarse texel is the mean of the texels of charts and gutters in it; what is bare between
-/// charts has no part in it, so that lookups on the model show no line at seams up to level 3. At level 4, the gutter
-/// of 4 texels is narrower than the 8 texels that a lookup reaches beyond a chart.
+/// continue over seams. A coarse texel is the mean of the texels of charts and gutters in it. Bare texels between
+/// charts do not count, so lookups on the model show no line at seams up to level 3. At level 4 the gutter of 4 texels
+/// is narrower than the 8 texels that a lookup reaches beyond a chart.
 class Texture {
   public:
     Texture(const stroke::Document& painting, const ProgressFn& progress = {});

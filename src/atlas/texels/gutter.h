@@ -26,12 +26,12 @@ struct Gutter {
     std::vector<GutterTap> taps;        ///< by gutter texel
 };
 
-/// For every uncovered texel within `width` texels of a chart's border: the surface is
-/// unfolded over the nearest border edge, and a quadratic function, stiff in its squares, is
-/// fitted to the texels of both charts round that place by moving least squares (weights
-/// (1 − d²/r²)², r = 2.4 texels); linear functions are kept. A bilinear lookup then differs over
-/// a seam by 1 % rms and 3.5 % at most for waves of 16 texels. Beside the border of the mesh, to the chart's own. The
-/// same bits for any number of threads. About 0.3 s for 300 000 texels of seam.
+/// Returns weights for every uncovered texel within `width` texels of a chart's border. The surface is unfolded over
+/// the nearest border edge. A quadratic function, stiff in its squares, is fitted to the texels of both charts round
+/// that place by moving least squares with weights (1 − d²/r²)², r = 2.4 texels. Linear functions are reproduced. A
+/// bilinear lookup then differs over a seam by 1 % rms and 3.5 % at most for waves of 16 texels. Beside the border of
+/// the mesh the function is fitted to the chart's own texels. The same bits for any number of threads. Cost: about 0.3
+/// s for 300 000 texels of seam.
 Gutter build_gutter(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, std::uint32_t width);
 
 /// Fills the gutter texels of an interleaved image [size * size * channels], row 0 at v = 0,
@@ -44,12 +44,11 @@ struct MipLevel {
     std::vector<float> image;  ///< row 0 at v = 0
 };
 
-/// Levels 1, 2, … of an image whose gutters are filled, each half the size of the one before:
-/// a covered texel is the mean of the four below it that are its own chart's or its gutter's,
-/// never another chart's, and the gutters are made anew from these. They end before the gap
-/// between charts (`atlas.gutter`) falls below 2 texels, which both sides of a bilinear lookup
-/// need, or before charts less than 4 texels long make up 1 % of the atlas. Costs a texel map
-/// and a gutter of each level's size.
+/// Returns levels 1, 2, … of an image whose gutters are filled, each half the size of the one before. A covered texel
+/// is the mean of those of the four below it that belong to its own chart or that chart's gutter. The gutters of a
+/// level are made anew from its covered texels. The levels end before the gap between charts (`atlas.gutter`) falls
+/// below 2 texels, which both sides of a bilinear lookup need, or before charts less than 4 texels long make up 1 % of
+/// the atlas. Cost: a texel map and a gutter of each level's size.
 std::vector<MipLevel> mip_levels(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, int channels,
                                  std::span<const float> image);
 

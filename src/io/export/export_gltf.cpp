@@ -130,7 +130,7 @@ class Writer {
         return static_cast<int>(all.size()) - 1;
     }
 
-    /// Views of new bytes count from the end of the source's; see `write_buffer`.
+    /// Views of new bytes count from the end of the source's; see `take_views`.
     int add_view(const void* data, std::size_t size, int target) {
         added_.resize(aligned(added_.size()));
         json view{

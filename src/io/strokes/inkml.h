@@ -61,7 +61,7 @@ struct InkmlOptions {
 /// | tuft:mapping | wrap, drape or project |
 /// | tuft:stencil | edges, four numbers X Y X Y each, metres; ink stays to the right of each edge where Y points down |
 /// | tuft:tool, tuft:on | brush or eraser; model or palette |
-/// | tuft:settings | `stroke::to_json` of a journal's settings |
+/// | tuft:settings | `stroke::json_of` a journal's settings |
 /// | tuft:clock | kept: T is not shifted to start at 0 |
 ///
 /// On a `trace` only, brush actions before the trace, in the order written: tuft:dip (an ink, or empty: the trace's

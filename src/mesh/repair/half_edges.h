@@ -68,14 +68,14 @@ struct OrientationReport {
     std::size_t edges_cut = 0;      ///< of one-sided components (Möbius), which cannot be oriented
 };
 
-/// Flips triangles until neighbours agree. In each component the majority retains its orientation. A closed
-/// component gets outward normals (positive signed volume). Exception: a cavity retains its orientation if the file
-/// has it inside another closed component and oriented consistently inward.
+/// Flips triangles until neighbours agree. In each component the majority retains its orientation. A closed component
+/// gets outward normals (positive signed volume). Exception: a cavity retains its orientation if the file has it inside
+/// another closed component and oriented consistently inward.
 ///
-/// With `OpenSides::outward` an open component is turned where its back sees 2.5 times as much of the open as its front
-/// or more (exposure.h), and at least 5 %. So the outside of a shell becomes its front, however many doors and windows
-/// it is made of; sheets, and cups as shallow as a hemisphere, whose inside may be meant, stay as the file has them.
-/// Where nine tenths of the area for which that is known were turned, the rest is turned as well.
+/// With `OpenSides::outward` an open component is flipped where its back sees at least 2.5 times as much of the open as
+/// its front (exposure.h), and at least 5 %. So the outside of a shell becomes its front, however many doors and
+/// windows it has. Sheets, and cups as shallow as a hemisphere, stay as the file has them, because their inside may be
+/// meant. Where nine tenths of the area with a known side were flipped, the rest is flipped as well.
 OrientationReport orient(RawMesh& mesh, OpenSides sides);
 
 /// Gives every fan of triangles round a vertex a vertex of its own. Returns the number of vertices with more than

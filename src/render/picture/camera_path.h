@@ -24,11 +24,11 @@ CameraPath turntable_path(const View& view);
 CameraPath standing_path(const std::vector<View>& views, double moving = 0.25);
 
 /// Returns the view at part `at` of the film, for a picture of `width` × `height` pixels that shows `points` (metres).
-/// Before the first and after the last key the camera stands. Between two keys it goes with the weight 3 s² − 2 s³ of
-/// the second, s the part of the way in time, except along a turntable, where it turns evenly: azimuth, elevation,
-/// margin, field of view, distance (its logarithm) and target are mixed. The target of a view that fits the object is
-/// the point of its sight line beside the middle of the object. At a key, and between equal ones, the view is the
-/// key's own. Throws as `make_camera`.
+/// Before the first and after the last key the camera stands. Between two keys azimuth, elevation, margin, field of
+/// view, logarithm of the distance and target are mixed. The weight of the second key is 3 s² − 2 s³, with s the part
+/// of the time between them; along a turntable it is s. The target of a view that fits the object is the point of its
+/// sight line beside the middle of the object. At a key, and between equal ones, the view is the key's own. Throws as
+/// `make_camera`.
 View view_at(const CameraPath& path, double at, int width, int height, std::span<const Vec3f> points);
 
 }  // namespace tuft::render

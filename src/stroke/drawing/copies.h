@@ -18,9 +18,9 @@ enum class CopyReading {
     upright,        ///< as the original, about the origin of its placement
 };
 
-/// Returns an entry mapped by a symmetry. A flat trace or area with placement (o, r, d) goes to (M o, ∓M r, M d), and
-/// below a reflection its x is flipped; so it meets the mirror image of every point, and its placement stays
-/// right-handed. Poses in space are mapped by `PoseMap::pose`. Other entries do not change.
+/// Returns an entry mapped by a symmetry. A flat trace or area with placement (o, r, d) goes to (M o, ∓M r, M d). Below
+/// a reflection its x is flipped: it meets the mirror image of every point, and its placement stays right-handed. Poses
+/// in space are mapped by `PoseMap::pose`. Other entries do not change.
 JournalEntry copy_of(const JournalEntry& entry, const PoseMap& map, CopyReading reading);
 
 /// Returns the copies of these entries by every element of a symmetry, one after the other, each in a group of its own

@@ -54,10 +54,10 @@ class WidthTables {
 /// Ratio of neighbouring sizes of a brush that are chosen for lines: few brushes for many widths.
 inline constexpr double kBrushSizes = 1.25;
 
-/// Returns `name` if a pressure from 0.3 to 0.7 draws `width` (metres), else the name of the size (`brush::scaled`,
-/// powers of `kBrushSizes`) that draws it at a pressure of about 0.36. Corners come out best there: at less pressure
-/// the tuft is long for the line and swings out, at more it lies flat and cuts them. `widths` is that of `name`. Sizes
-/// are clamped to the range of presets.
+/// Returns `name` if a pressure from 0.3 to 0.7 draws `width` (metres). Else returns the name of the size
+/// (`brush::scaled`, powers of `kBrushSizes`) that draws it at a pressure of about 0.36. Corners come out best at that
+/// pressure: at less, the tuft is long for the line and swings out; at more, it lies flat and cuts them. `widths` is
+/// that of `name`. Sizes are clamped to the range of presets.
 std::string brush_for_width(const std::string& name, const LineWidths& widths, double width);
 
 /// Adds the ink of a line to a box: its stencil, else its outline, else its samples with half of the line width around

@@ -45,10 +45,10 @@ struct PressureState {
 /// Independent of the sampling rate to O(dt / follow).
 double press(PressureState& state, const Vec3& position, double time, const PressureOptions& options = {});
 
-/// Sets the pressures of a whole flat trace. As above, but the hand moves when it touches (its initial speed is that of
-/// the first samples) and when it lifts: over the last 3 mm, at most a quarter of the path, the pressure falls to 0. In
-/// 60 ms more (samples are added) the tip is taken back over the ink as it leaves. `PressureFrom::none` changes
-/// nothing.
+/// Sets the pressures of a whole flat trace. As above, but the hand moves when it touches and when it lifts. Its
+/// initial speed is that of the first samples. Over the last 3 mm, at most a quarter of the path, the pressure falls to
+/// 0. In 60 ms more, for which samples are added, the tip is taken back over the ink as it leaves. `PressureFrom::none`
+/// changes nothing.
 StrokeSamples press(StrokeSamples trace, const PressureOptions& options);
 
 }  // namespace tuft::stroke

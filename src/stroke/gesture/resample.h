@@ -25,13 +25,13 @@ struct ResampleOptions {
 ///
 ///     ds² = |dx|² + (lever dφ)² + (drift dt)²,
 ///
-/// and one at the last sample. Between samples the position follows a centripetal Catmull–Rom spline
-/// ([Catmull1974], [Yuksel2011]: no cusps, no self-crossings within a segment), time a monotone cubic over the spline's
-/// knots [Fritsch1980], the rotation a cumulative cubic in time [Kim1995], with rates from
-/// the parabola through three samples: all are of third order. The result does not depend on the sampling rate beyond
-/// that order, nor on whether samples come one by one or all at once. The spline looks one sample ahead. A sample whose
-/// time falls counts as simultaneous with the one before; repeated samples are merged. Throws `Error` when the path
-/// needs more than `max_poses`.
+/// and one at the last sample. Between samples the position follows a centripetal Catmull–Rom spline, which has no
+/// cusps and no self-crossings within a segment [Catmull1974, Yuksel2011]. Time is a monotone cubic over the spline's
+/// knots [Fritsch1980]. The rotation is a cumulative cubic in time [Kim1995], with rates from the parabola through
+/// three samples. All are of third order. The result does not depend on the sampling rate beyond that order, nor on
+/// whether samples come one by one or all at once. The spline looks one sample ahead. A sample whose time falls counts
+/// as simultaneous with the one before; repeated samples are merged. Throws `Error` when the path needs more than
+/// `max_poses`.
 class Resampler {
   public:
     explicit Resampler(const ResampleOptions& options);

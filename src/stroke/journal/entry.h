@@ -55,7 +55,8 @@ struct Extent {
                         ///< surface with wet ink. wipe: part of the ink that is removed, 0–1
     double side = 0;  ///< part of the tuft's width, −1–1, from the right flank (> 0) or the left one (< 0); 0: all
                       ///< of it. Right is the ferrule's +x: the right edge of a stroke drawn away from the hand
-    double time = 0;  ///< dip: s in the dish, upright, in which ink rises in the hair over its level (ink/uptake.h)
+    double time =
+        0;  ///< dip: s in the dish, upright, in which ink rises in the hair over its level (ink/exchange/uptake.h)
 
     bool operator==(const Extent&) const = default;
 };

@@ -39,15 +39,19 @@ struct ModelMotion {
 /// Returns the motion that takes the former model to the revised one. Empty where the revised model is in place, or has
 /// another shape.
 ///
-/// Candidates are the 24 rotations that map axes to axes with the boxes fitted to each other, no motion but that of the
-/// box's centre, and the four that map principal axes to principal axes, with a scale where the boxes say so; each is
-/// improved by `register_points` (registration.h). The surfaces are compared at 600 points of each, distributed evenly
-/// over the area, by the mean distance d̄ of the nearest 70 % of them to the other surface (`mean_distance`); each
-/// distance counts at most 2 % of the box diagonal D. A motion is accepted if d̄ with it is less than half of d̄ without
-/// it, less than half of d̄ with any simpler one, and less than 0.2 % of D, and if d̄ without it is more than 0.01 % of
-/// D. Among motions with equal d̄ the mean distance of all points decides. A finer or coarser mesh, a hole or a new part
-/// is so no motion. A motion that maps the shape to itself is not found. An affine motion, where it is allowed, is
-/// searched last. Cost: about 0.2–1 s.
+/// Candidates are the 24 rotations that map axes to axes, with the boxes fitted to each other; the shift of the box's
+/// centre alone; and the four rotations that map principal axes to principal axes, with a scale where the boxes differ
+/// in size. `register_points` (registration.h) improves each.
+///
+/// The measure is d̄, the mean distance of the nearest 70 % of 600 points of each surface to the other one
+/// (`mean_distance`). The points are distributed evenly over the area. Each distance counts at most 2 % of the box
+/// diagonal D. A motion is accepted under four conditions: d̄ with it is less than half of d̄ without it, less than
+/// half of d̄ with any simpler motion, and less than 0.2 % of D; d̄ without it is more than 0.01 % of D. Among motions
+/// with equal d̄ the mean distance of all points decides. So a finer or coarser mesh, a hole or a new part is no
+/// motion.
+///
+/// A motion that maps the shape to itself is not found. An affine motion, where it is allowed, is searched last. Cost:
+/// about 0.2–1 s.
 std::optional<ModelMotion> find_motion(const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised,
                                        MotionFreedom freedom = MotionFreedom::similarity);
 

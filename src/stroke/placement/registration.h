@@ -41,11 +41,11 @@ struct RegistrationOptions {
 };
 
 /// Improves a motion until it takes the points onto the surface: minimises Σ (n·(M p − c))² over the points, c the
-/// closest point and n its normal. Points farther than `slack` and than five times the median distance lie on what was
-/// changed and do not count, nor do pairs whose normals differ by more than 70°. Directions in which the surface slides
-/// in itself, such as the turn of a bowl about its axis, do not change: eigenvalues below 1e-4 of the largest. Ends
-/// where no point moves by more than 1e-7 of `size`, or after `iterations`. Converges from rotations of about 30° where
-/// shapes agree. Deterministic.
+/// closest point and n its normal. A point does not count where it is farther than `slack` and than five times the
+/// median distance, because it lies on what was changed. Nor does a pair whose normals differ by more than 70°.
+/// Directions in which the surface slides in itself, such as the turn of a bowl about its axis, do not change:
+/// eigenvalues below 1e-4 of the largest. Ends where no point moves by more than 1e-7 of `size`, or after `iterations`.
+/// Converges from rotations of about 30° where shapes agree. Deterministic.
 ModelMotion register_points(std::span<const OrientedPoint> points, const mesh::SurfaceQuery& surface, ModelMotion start,
                             const RegistrationOptions& options);
 
