@@ -255,7 +255,9 @@ class ChartedMesh {
 Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& options) {
     Unwrapped out;
     Stopwatch watch;
-    auto [chart_options, merge_options] = chart_limits(mesh, options);
+    Limits limits = chart_limits(mesh, options);
+    const ChartOptions& chart_options = limits.chart;
+    MergeOptions& merge_options = limits.merge;
     const ChartedMesh charted(mesh, options.seams);
     Layout layout;
     CutMesh& cut = layout.cut;

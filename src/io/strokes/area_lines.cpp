@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <unordered_map>
+#include <utility>
 
 #include "core/geometry/segment.h"
 #include "core/system/interrupt.h"
@@ -33,26 +32,36 @@ constexpr int kLevels = 4;
 /// Points within a radius, found by the squares of a grid as wide.
 class Near {
   public:
-    explicit Near(double radius) : radius_(radius) {}
-    void add(const Vec2& p) { squares_[key(square(p.x), square(p.y))].push_back(p); }
+    Near(double radius, const std::vector<Vec2>& points) : radius_(radius) {
+        for (const Vec2& p : points) points_.push_back({key(square(p.x), square(p.y)), p});
+        std::sort(points_.begin(), points_.end(), [](const Placed& a, const Placed& b) { return a.key < b.key; });
+    }
     template <class Test>
     bool any(const Vec2& p, Test test) const {
+        const std::int64_t x = square(p.x), y = square(p.y);
         for (std::int64_t j = -1; j <= 1; ++j)
-            for (std::int64_t i = -1; i <= 1; ++i)
-                if (const auto at = squares_.find(key(square(p.x) + i, square(p.y) + j)); at != squares_.end())
-                    for (const Vec2& q : at->second)
-                        if (test(q)) return true;
+            for (std::int64_t i = -1; i <= 1; ++i) {
+                const std::uint64_t wanted = key(x + i, y + j);
+                auto at = std::lower_bound(points_.begin(), points_.end(), wanted,
+                                           [](const Placed& a, std::uint64_t b) { return a.key < b; });
+                for (; at != points_.end() && at->key == wanted; ++at)
+                    if (test(at->p)) return true;
+            }
         return false;
     }
 
   private:
+    struct Placed {
+        std::uint64_t key;
+        Vec2 p;
+    };
     std::int64_t square(double x) const { return static_cast<std::int64_t>(std::floor(x / radius_)); }
     static std::uint64_t key(std::int64_t i, std::int64_t j) {
         return static_cast<std::uint64_t>(i) * 0x9E3779B97F4A7C15u ^
                static_cast<std::uint64_t>(j) * 0xC2B2AE3D27D4EB4Fu;
     }
     double radius_;
-    std::unordered_map<std::uint64_t, std::vector<Vec2>> squares_;
+    std::vector<Placed> points_;  // by the key of their square
 };
 
 /// Of the outline; the area is on its left.
@@ -170,14 +179,23 @@ Line even(std::span<const Vec2> path, double step) {
 /// the ends of a line that is open, which stay.
 Line means(const Line& line, std::ptrdiff_t reach, bool closed) {
     const auto n = static_cast<std::ptrdiff_t>(line.size());
+    std::vector<double> curve;  // its weights of neighbours; of all points but those at open ends the same
     Line out;
     for (std::ptrdiff_t i = 0; i < n; ++i) {
         const std::ptrdiff_t m = closed ? std::min(reach, n / 2) : std::min({reach, i, n - 1 - i});
+        if (static_cast<std::ptrdiff_t>(curve.size()) != m) {
+            curve.clear();
+            for (std::ptrdiff_t k = 1; k <= m; ++k) {
+                const double x = 2.5 * double(k) / double(m);
+                curve.push_back(std::exp(-0.5 * x * x));
+            }
+        }
         Vec2 sum = line[static_cast<std::size_t>(i)];
         double weights = 1;
         for (std::ptrdiff_t k = 1; k <= m; ++k) {
-            const double x = 2.5 * double(k) / double(m), w = std::exp(-0.5 * x * x);
-            sum += w * (line[static_cast<std::size_t>((i + k) % n)] + line[static_cast<std::size_t>((i - k + n) % n)]);
+            const double w = curve[static_cast<std::size_t>(k - 1)];
+            const std::ptrdiff_t after = i + k < n ? i + k : i + k - n, before = i >= k ? i - k : i - k + n;
+            sum += w * (line[static_cast<std::size_t>(after)] + line[static_cast<std::size_t>(before)]);
             weights += 2 * w;
         }
         out.push_back(sum / weights);
@@ -216,10 +234,11 @@ Line smooth(const Ring& ring, double chord) {
 /// where they began.
 std::vector<Line> runs_at(const Shape& shape, const std::vector<std::vector<Edge>>& border, double d, double width) {
     const double chord = kChord * width, beside = d + chord;
-    Near open(beside);
+    std::vector<Vec2> middles;
     for (const std::vector<Edge>& ring : border)
         for (const Edge& e : ring)
-            if (e.open) open.add(e.middle());
+            if (e.open) middles.push_back(e.middle());
+    const Near open(beside, middles);
     std::vector<Line> runs;
     const Shape inner = shape.inset(d, 0.5 * kSlack * width);
     for (const Ring& ring : inner.rings()) {
@@ -354,9 +373,10 @@ Line dab(const Line& loop, double width) {
 bool cover(std::vector<std::vector<Edge>>& border, const std::vector<AreaLine>& lines) {
     for (std::size_t from = 0, to = 0; from < lines.size(); from = to) {
         const double reach = kBare * lines[from].width;
-        Near near(reach);
+        std::vector<Vec2> points;
         for (; to < lines.size() && lines[to].width == lines[from].width; ++to)
-            for (const Vec2& p : lines[to].line) near.add(p);
+            points.insert(points.end(), lines[to].line.begin(), lines[to].line.end());
+        const Near near(reach, points);
         for (std::vector<Edge>& ring : border)
             for (Edge& e : ring)
                 if (const Vec2 p = e.middle();
