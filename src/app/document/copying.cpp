@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace tuft::app {
 namespace {
 
-constexpr double kReach = 60;                                     // units between a click and a stroke
+constexpr double kStrokeReach = 60;                               // units between a click and a stroke
 constexpr std::size_t kMostPictureBytes = std::size_t{24} << 20;  // of a picture that is kept
 constexpr std::size_t kMostSteps = 200;
 
@@ -66,7 +66,7 @@ void edit_stroke(const CopyToEdit& c, const Vec2& at) {
     CopyInWork& copy = c.copy;
     if (!c.ready() || copy.shown->order.empty()) return;
     const writer::StrokePlace place = writer::nearest_place(*copy.shown, at);
-    if (place.distance > kReach) return copy.joined.reset();
+    if (place.distance > kStrokeReach) return copy.joined.reset();
     if (copy.edit == CopyEdit::join) return join(c, place.stroke);
     if (copy.edit == CopyEdit::remove && copy.shown->order.size() == 1) return;
     begin_step(c);
