@@ -17,10 +17,10 @@ namespace {
 
 using pictures::TriedStroke;
 
-constexpr float kTriedHeights[] = {36, 28, 22};  // pixels at a scale of 1, by the room that there is
+constexpr float kTriedHeights[] = {30, 26, 22};  // pixels at a scale of 1, by the room that there is
 constexpr float kAspect = static_cast<float>(TriedStroke::kWidth) / TriedStroke::kHeight;
-constexpr float kCardHeight = 76, kCardIcon = 36;  // pixels at a scale of 1
-constexpr float kBrowserWidth = 560, kLeastCard = 232;
+constexpr float kCardHeight = 70, kCardIcon = 28;  // pixels at a scale of 1
+constexpr float kBrowserWidth = 580, kLeastCard = 172;
 
 // Pixels of a brush at a scale of 1, by the room that there is.
 constexpr float kRackHeights[] = {54, 40, 30};
@@ -188,7 +188,7 @@ float rack_rows(Session& s, const std::vector<BrushFamily>& families, ToolRoom r
     const float all = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX(), gap = named ? ui.px(8) : 0,
                 letters = 0.8f * ImGui::GetFontSize();
     // Tufts are thin: as many fit in a row as have room for one each.
-    const float cell = std::min(ui.px(26), (all - 3 * gap) / (named ? 10.0f : 11.0f)),
+    const float cell = std::min(ui.px(26), (all - 3 * gap) / (named ? 10.0f : 12.0f)),
                 height = ui.px(kRackHeights[static_cast<int>(room)]);
     const float row = height + (named ? 1.2f * letters : 0);
     float x = 0, y = ImGui::GetCursorPosY(), rows = 1;

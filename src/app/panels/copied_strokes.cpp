@@ -88,6 +88,27 @@ void draw_number(const Ui& ui, ImVec2 at, std::size_t number, unsigned colour) {
                   text.c_str());
 }
 
+/// Where the numbers stand: at the begins of the strokes, turned about them and away where one would hide another.
+/// `apart`: pixels.
+std::vector<ImVec2> number_places(const std::vector<std::vector<ImVec2>>& lines, float apart) {
+    std::vector<ImVec2> places;
+    for (const std::vector<ImVec2>& line : lines) {
+        const ImVec2 begin = line.front();
+        ImVec2 place = begin;
+        const auto is_free = [&] {
+            return std::none_of(places.begin(), places.end(), [&](const ImVec2& p) {
+                return std::hypot(p.x - place.x, p.y - place.y) < 0.95f * apart;
+            });
+        };
+        for (int k = 0; k < 16 && !is_free(); ++k) {
+            const float angle = 2.4f * static_cast<float>(k), far = apart * (1 + 0.1f * static_cast<float>(k));
+            place = ImVec2(begin.x + far * std::cos(angle), begin.y + far * std::sin(angle));
+        }
+        places.push_back(place);
+    }
+    return places;
+}
+
 void draw_strokes(Ui& ui, const CopyInWork& copy, const Canvas& canvas) {
     ImDrawList* draw = ImGui::GetWindowDrawList();
     std::vector<std::vector<ImVec2>> lines;
@@ -102,7 +123,8 @@ void draw_strokes(Ui& ui, const CopyInWork& copy, const Canvas& canvas) {
         const ImVec2 place = line[line.size() / 3];  // strokes cross in their middles
         ui.mark_at("Stroke " + std::to_string(s + 1), place.x, place.y);
     }
-    for (std::size_t s = 0; s < lines.size(); ++s) draw_number(ui, lines[s].front(), s + 1, colour_of(s));
+    const std::vector<ImVec2> places = number_places(lines, ui.px(17));
+    for (std::size_t s = 0; s < lines.size(); ++s) draw_number(ui, places[s], s + 1, colour_of(s));
 }
 
 /// The picture with its strokes; a click edits one.
