@@ -303,6 +303,8 @@ struct Write : Paint {
     std::filesystem::path glyphs;          ///< source of strokes before the bundled ones, or empty
     std::filesystem::path like;            ///< picture of a character to copy, or empty
     std::string order;                     ///< of the copy's strokes (`writer::parse_order`); empty: by rules
+    std::string cuts;                      ///< of the copy's pieces (`writer::parse_cuts`); empty: none
+    double threshold = 0;                  ///< of the copy's ink (`writer::picture_ink`)
     std::filesystem::path numbered;        ///< drawing of the copy's pieces to write, .svg, or empty
     std::string style = "kaishu";          ///< name or .toml
     bool fit = false;                      ///< to the source's outlines

@@ -239,6 +239,16 @@ void add_write_options(CLI::App* w, Write& write) {
                   "2, and writes 4 from its end (default: by rules, printed)")
         ->needs(like)
         ->type_name("LIST");
+    w->add_option(
+         "--cut", write.cuts,
+         "cuts pieces of the copy before --order: \"3:0.45\" cuts piece 3 at 0.45 of its length; what is cut off is "
+         "a new piece, numbered after the last one")
+        ->needs(like)
+        ->type_name("LIST");
+    w->add_option("--threshold", write.threshold,
+                  "of the copy's ink, from -0.9 (only the darkest) to 0.9; more makes lines thicker")
+        ->needs(like)
+        ->check(CLI::Range(-0.9, 0.9));
     w->add_option("--numbered", write.numbered, "write a drawing of the pieces of the copy, numbered: .svg")
         ->needs(like);
     w->add_option("--glyphs", write.glyphs,

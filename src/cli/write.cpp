@@ -10,12 +10,10 @@
 #include "cli/steps.h"
 #include "core/system/files.h"
 #include "core/text/units.h"
-#include "io/image/image.h"
 #include "io/strokes/svg.h"
 #include "stroke/drawing/drawing.h"
 #include "stroke/drawing/free_area.h"
 #include "writer/copy/copied_glyph.h"
-#include "writer/copy/photo.h"
 #include "writer/text/text.h"
 
 namespace tuft::cli {
@@ -25,22 +23,14 @@ constexpr double kPartOfModel = 0.25;   // of the model's diagonal that a text t
 constexpr double kPartOfPath = 0.9;     // of a path on the model that a text takes
 constexpr double kPartOfHeight = 0.25;  // of the model's height that characters round it have at most
 
-/// The character of a picture.
-writer::Glyph copy_character(const Write& a, std::string& note) {
-    const std::u32string name = writer::characters_of(a.text);
-    if (name.size() > 1) throw UsageError("--like copies one character: --text is its name");
-    const writer::Cells ink = writer::ink_of(io::read_image8(a.like), a.like.string());
-    const writer::Skeleton skeleton = writer::skeleton_of(ink);
-    const writer::StrokeOrder order =
-        a.order.empty() ? writer::order_by_rules(skeleton) : writer::parse_order(a.order, skeleton.pieces.size());
+/// Writes the drawing of a copy where it is wanted. Returns what is to be said of the copy.
+std::string report_copy(const writer::CopiedPicture& copy, const Write& a) {
     if (!a.numbered.empty()) {
-        if (a.numbered.extension() != ".svg") throw UsageError("--numbered writes a drawing: .svg");
-        const std::string svg = writer::numbered_svg(ink, skeleton, order);
+        const std::string svg = writer::numbered_svg(copy.ink.cells, copy.skeleton, copy.order);
         write_file(a.numbered, svg.data(), svg.size());
     }
-    note = fmt::format("{} strokes of {} pieces; --order \"{}\"", order.size(), skeleton.pieces.size(),
-                       writer::order_text(order));
-    return writer::copied_glyph(ink, skeleton, order, name.empty() ? U'\u25A1' : name[0]);
+    return fmt::format("{} strokes of {} pieces; --order \"{}\"", copy.order.size(), copy.skeleton.pieces.size(),
+                       writer::order_text(copy.order));
 }
 
 /// A text and what is to be said of it.
@@ -51,13 +41,19 @@ struct TextToWrite {
 
 TextToWrite read_text(const Write& a) {
     if (a.text.empty() && a.like.empty()) throw UsageError("there is nothing to write: --text or --like is missing");
+    if (!a.like.empty() && writer::characters_of(a.text).size() > 1)
+        throw UsageError("--like copies one character: --text is its name");
+    if (!a.numbered.empty() && a.numbered.extension() != ".svg") throw UsageError("--numbered writes a drawing: .svg");
     writer::TextReader reader;
-    TextToWrite out{reader.read({.text = a.like.empty() ? a.text : "", .glyphs = a.glyphs, .style = a.style}), ""};
+    TextToWrite out{
+        reader.read({.text = a.text,
+                     .glyphs = a.glyphs,
+                     .style = a.style,
+                     .like = a.like,
+                     .correction = {.threshold = a.threshold, .cuts = writer::parse_cuts(a.cuts), .order = a.order}}),
+        ""};
+    if (reader.copied()) out.note = report_copy(*reader.copied(), a);
     writer::Text& text = out.text;
-    if (!a.like.empty()) {
-        text.lines = {{copy_character(a, out.note)}};
-        text.group = writer::group_of(a.text.empty() ? a.like.stem().string() : a.text);
-    }
     if (text.blank()) throw UsageError("--text: there is nothing to write in it");
     text.layout.direction = *writer::direction_named(a.direction);
     if (a.spacing > 0) text.layout.spacing = a.spacing;

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "both_programs.h"
+#include "copied_picture.h"
 #include "core/system/disk_cache.h"
 
 namespace tuft::app {
@@ -154,7 +155,7 @@ class LetteringOnModel : public BothPrograms {
                               .place = place_lettering(l, query, at->position, -along, right, -along),
                               .brush = l.style_brush ? "" : brush,
                               .ink = ink,
-                              .fit = l.fit,
+                              .fit = l.fitted(),
                               .group = {.name = l.text->group}};
             std::string words = place_words(l, command.place, brush);
             return std::pair<Command, std::string>(std::move(command), std::move(words));
@@ -188,6 +189,25 @@ TEST_F(LetteringOnModel, DownTheVaseWithTheChosenBrushAndInkItIsTheSame) {
 TEST_F(LetteringOnModel, RoundTheBowlItIsTheSame) {
     const Lettering l = lettering("\xe6\xb0\xb8 it's", 0.015, writer::Direction::rim);
     expect_as_by_program("bowl.ply", by_studio("bowl.ply", l, {0.3, -1, 0.03}, {-0.3, 1, 0}));
+}
+
+// Copied from a picture, as rules find it and corrected.
+TEST_F(LetteringOnModel, LikeAPictureItIsTheSame) {
+    const std::string picture = folder_ + "/it's a cross.png";
+    write_cross(picture);
+    for (const std::string& order : {std::string(), std::string("2+3 -1")}) {
+        Lettering l;
+        copy_picture(l, picture);
+        l.wanted.text = "\xe5\x8d\x81";
+        if (!order.empty()) l.wanted.correction = {.threshold = 0.125, .cuts = {{1, 0.25}}, .order = order};
+        l.side = 0.03;
+        read(l);
+        ASSERT_TRUE(l.text) << l.fault.text();
+        const Painted studio = by_studio("bowl.ply", l, {0.004, -1, 0.03}, {0, 1, 0});
+        expect_as_by_program("bowl.ply", studio);
+        EXPECT_EQ(studio.journal.size(), 2u);
+        EXPECT_EQ(studio.words.find("--order") == std::string::npos, order.empty()) << studio.words;
+    }
 }
 
 TEST_F(LetteringOnModel, IsStoppedBeforeItsFirstStrokeWithNothingLeftBehind) {

@@ -12,21 +12,7 @@
 namespace tuft::app {
 namespace {
 
-class Panels : public StudioProgram {
-  protected:
-    // Where `places` says that each label lies.
-    static std::map<std::string, std::pair<double, double>> places(const std::string& out) {
-        std::map<std::string, std::pair<double, double>> found;
-        std::istringstream lines(out);
-        for (std::string line; std::getline(lines, line);) {
-            std::istringstream in(line);
-            double x = 0, y = 0;
-            std::string name;
-            if (in >> x >> y && std::getline(in >> std::ws, name)) found[name] = {x, y};
-        }
-        return found;
-    }
-};
+class Panels : public StudioProgram {};
 
 struct Setting {
     const char* language;

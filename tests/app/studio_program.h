@@ -6,9 +6,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "paths.h"
 #include "projects.h"
@@ -56,6 +58,19 @@ class StudioProgram : public testing::Test {
         return {WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw), read(path(".out")), read(path(".err"))};
     }
     nlohmann::json tuft(const std::string& arguments) const { return test::tuft(arguments, path("tuft.json")); }
+
+    // Where `places` says that each label lies.
+    static std::map<std::string, std::pair<double, double>> places(const std::string& out) {
+        std::map<std::string, std::pair<double, double>> found;
+        std::istringstream lines(out);
+        for (std::string line; std::getline(lines, line);) {
+            std::istringstream in(line);
+            double x = 0, y = 0;
+            std::string name;
+            if (in >> x >> y && std::getline(in >> std::ws, name)) found[name] = {x, y};
+        }
+        return found;
+    }
 
     fs::path folder_;
 };

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "writer/copy/copied_glyph.h"
+#include "writer/copy/correction.h"
 #include "writer/copy/photo.h"
 #include "writer/gesture/stroke_line.h"
 
@@ -122,6 +123,71 @@ TEST(Copy, AnOrderIsWhatItWasPrintedAs) {
     EXPECT_EQ(parse_order(order_text(order), 4), order);
     for (const char* bad : {"", " ", "0", "5", "1 1", "1+", "+1", "a", "1-2", "--1", "99999999999999999999999"})
         EXPECT_THROW(parse_order(bad, 4), Error) << bad;
+}
+
+TEST(CopiedPicture, TheSquareLiesOnTheInkOfThePicture) {
+    const PictureInk ink = picture_ink(photo_of(kTen), "photo");
+    // The box of the bars is [38, 362]², whose longer side is 0.84 of the square.
+    EXPECT_LT(glm::distance(ink.pixel_at(Vec2(0.5 * kSide)), Vec2(200)), 1);
+    const double half = 0.5 * kCopiedPart * kSide;
+    EXPECT_LT(glm::distance(ink.pixel_at({0.5 * kSide - half, 0.5 * kSide + half}), Vec2(38)), 1.5) << "y goes up";
+}
+
+TEST(CopiedPicture, AThresholdNearerToThePaperTakesMoreForInk) {
+    std::size_t before = 0;
+    for (const double threshold : {-0.8, -0.4, 0.0, 0.4, 0.8}) {
+        // The soft edge of the bars is a pixel wide: each step adds some of it, and takes nothing away. The square
+        // follows the ink's box, which grows by less than its area does.
+        const PictureInk ink = picture_ink(photo_of(kTen), "photo", threshold);
+        const double area = static_cast<double>(ink.cells.count()) * std::pow(ink.cells.cell / ink.units, 2);
+        EXPECT_GE(area, 0.995 * static_cast<double>(before)) << threshold;
+        before = static_cast<std::size_t>(area);
+    }
+}
+
+TEST(CopiedPicture, ACutDividesAPieceWhereItIsAndChangesNoStroke) {
+    const io::Image8 picture = photo_of(kMouth);
+    const CopiedPicture whole = take_apart(picture, "photo", {});
+    const std::vector<PieceCut> cuts = parse_cuts("1:0.3, 2:0.75");
+    const CopiedPicture cut = take_apart(picture, "photo", {.threshold = 0, .cuts = cuts, .order = {}});
+    ASSERT_EQ(cut.skeleton.pieces.size(), whole.skeleton.pieces.size() + 2);
+    for (std::size_t k = 0; k < 2; ++k) {
+        const Piece &old = whole.skeleton.pieces[k], &first = cut.skeleton.pieces[k],
+                    &rest = cut.skeleton.pieces[whole.skeleton.pieces.size() + k];
+        EXPECT_NEAR(first.length(), cuts[k].at * old.length(), 1e-9);
+        EXPECT_NEAR(rest.length(), (1 - cuts[k].at) * old.length(), 1e-9);
+        EXPECT_EQ(first.line.back(), rest.line.front());
+        EXPECT_EQ(rest.line.back(), old.line.back());
+    }
+    const Glyph a = copied_glyph(whole.ink.cells, whole.skeleton, whole.order, U'x'),
+                b = copied_glyph(cut.ink.cells, cut.skeleton, cut.order, U'x');
+    ASSERT_EQ(a.strokes.size(), b.strokes.size());
+    // A cut adds a point to a line, on it.
+    for (std::size_t s = 0; s < a.strokes.size(); ++s)
+        for (const Vec2& p : b.strokes[s].median) {
+            double nearest = 1e9;
+            const std::vector<Vec2>& line = a.strokes[s].median;
+            for (std::size_t i = 1; i < line.size(); ++i) {
+                const Vec2 d = line[i] - line[i - 1];
+                const double t = std::clamp(glm::dot(p - line[i - 1], d) / std::max(glm::dot(d, d), 1e-12), 0.0, 1.0);
+                nearest = std::min(nearest, glm::distance(p, line[i - 1] + t * d));
+            }
+            EXPECT_LT(nearest, 1e-9);
+        }
+}
+
+TEST(CopiedPicture, CutsAreReadAsTheyAreWrittenAndWrongOnesQuoted) {
+    EXPECT_EQ(cuts_text(parse_cuts(" 3:0.45\t12:0.125,1:0.999")), "3:0.450 12:0.125 1:0.999");
+    EXPECT_TRUE(parse_cuts("").empty());
+    for (const char* wrong : {"3", "0:0.5", "3:0", "3:1", "3:", ":0.5", "3:0.5x", "-3:0.5", "3:nan"}) {
+        try {
+            parse_cuts(wrong);
+            ADD_FAILURE() << wrong;
+        } catch (const Error& error) {
+            EXPECT_NE(error.message().text().find(wrong), std::string::npos) << error.message().text();
+        }
+    }
+    EXPECT_THROW(take_apart(photo_of(kTen), "photo", {.threshold = 0, .cuts = {{99, 0.5}}, .order = {}}), Error);
 }
 
 }  // namespace

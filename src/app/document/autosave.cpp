@@ -225,7 +225,7 @@ std::optional<io::Attachment> Autosave::attachment(const std::string& kind, cons
 }
 
 void Autosave::take_attachments(const io::Project& project) {
-    for (const char* kind : {io::kReferences, io::kSnapshots})
+    for (const char* kind : {io::kCopies, io::kReferences, io::kSnapshots})
         for (io::Attachment& attachment : project.attachments(kind))
             attached_.insert_or_assign({kind, attachment.name}, std::move(attachment));
 }

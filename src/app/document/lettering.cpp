@@ -18,25 +18,12 @@ namespace {
 constexpr std::size_t kMostStrokesShown = 750, kMostCharactersShown = 60;
 constexpr double kUsualPart = 0.1;  // of the model's diagonal
 constexpr double kShownStep = 0.1;  // of a character's side: the longest straight part of its preview
+constexpr int kMostAcross = 1024;   // pixels of a copied picture in its panel
 constexpr int kPerSpan = 64;        // samples of a curve between two control points
 
 /// Rounded to a thousandth, as `place_words` states it.
 double rounded(double value) {
     return std::round(value * 1000) / 1000;
-}
-
-/// A text as one argument of a shell.
-std::string quoted(const std::string& text) {
-    std::string out = "'";
-    for (const char c : text) {
-        if (c == '\n')
-            out += "\\n";
-        else if (c == '\'')
-            out += "'\\''";
-        else
-            out += c;
-    }
-    return out + "'";
 }
 
 /// The curve up to where it leaves the surface, and its point nearest to `at`.
@@ -118,6 +105,15 @@ double usual_side(const Box& model) {
     return std::round(side / step) * step;
 }
 
+void copy_picture(Lettering& l, const std::filesystem::path& picture) {
+    l.wanted.like = picture;
+    l.wanted.correction = {};
+    l.copy.shown.reset();
+    l.copy.earlier.clear();
+    l.copy.joined.reset(), l.copy.dragged.reset();
+    set_text(l, "");  // the text of before is no name of one character
+}
+
 void lay_out(Lettering& l) {
     if (!l.text) return;
     const writer::Style& style = l.text->style;
@@ -130,9 +126,12 @@ void lay_out(Lettering& l) {
 LetteringReader::Read LetteringReader::read(const writer::TextRequest& request) {
     Read out;
     try {
-        if (request.text.empty()) return out;
+        if (request.text.empty() && request.like.empty()) return out;
         writer::Text text = reader_.read(request);
         if (!text.blank()) out.text = std::move(text);
+        out.copy = reader_.copied();
+        if (out.copy && request.like != shown_) out.picture = small_picture(reader_.picture(), kMostAcross);
+        shown_ = out.copy ? request.like : "";
     } catch (const std::exception& error) {
         out.fault = message_of(error);
     }
@@ -146,6 +145,9 @@ void LetteringReader::update(Lettering& l) {
         l.text = std::move(read.text);
         l.fault = std::move(read.fault);
         ++l.revision;
+        // What was edited meanwhile is newer.
+        if (l.wanted == asked_) l.copy.shown = std::move(read.copy), l.copy.shown_for = asked_.correction;
+        if (!read.picture.rgb.empty()) l.copy.picture = std::move(read.picture), l.copy.fresh = true;
     }
     lay_out(l);
     if (l.wanted == asked_) return;
@@ -201,8 +203,9 @@ std::vector<std::vector<PreviewPoint>> preview_lines(const mesh::SurfaceQuery& q
 
 std::string place_words(const Lettering& l, const LetteringPlace& place, const std::string& brush) {
     const writer::TextRequest& wanted = l.wanted;
-    std::string words = fmt::format("--text {} --style {} --size {:.3f} --direction {}", quoted(wanted.text),
-                                    wanted.style, l.side / kMillimetre, writer::name_of(l.direction));
+    std::string words = wanted.like.empty() ? "--text " + quoted(wanted.text) : copy_words(wanted);
+    words += fmt::format(" --style {} --size {:.3f} --direction {}", wanted.style, l.side / kMillimetre,
+                         writer::name_of(l.direction));
     if (!wanted.glyphs.empty()) words += " --glyphs " + quoted(wanted.glyphs.string());
     if (l.spacing > 0) words += fmt::format(" --spacing {:.3f}", l.spacing);
     if (l.line_spacing > 0) words += fmt::format(" --line-spacing {:.3f}", l.line_spacing);

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "app/document/copying.h"
 #include "app/document/curve.h"
 #include "app/document/writing.h"
 #include "core/message.h"
@@ -25,6 +26,8 @@ struct Lettering {
     double turn = 0;                       ///< radians, clockwise in the view; of lines and columns
     bool style_brush = true;               ///< the style's brush in the size that suits; false: the chosen brush
     bool fit = false;                      ///< to the outlines of the source
+    CopyInWork copy;                       ///< of the picture `wanted.like`
+    std::vector<KeptCopy> kept;            ///< of the project
     std::vector<CurvePoint> curve;         ///< of the curve tool when it was left last; the text runs along it
 
     std::optional<writer::Text> text;  ///< as it was read; nothing: there is nothing to write
@@ -32,7 +35,11 @@ struct Lettering {
     std::uint64_t revision = 0;        ///< changes with `text`
 
     bool empty() const { return !text; }
+    bool fitted() const { return fit || !wanted.like.empty(); }  ///< to outlines; copies always are
 };
+
+/// Copies a character from a picture from now on; an empty path: writes the text again.
+void copy_picture(Lettering& lettering, const std::filesystem::path& picture);
 
 /// Sets the text elsewhere than in its field.
 inline void set_text(Lettering& lettering, const std::string& text) {
@@ -58,11 +65,14 @@ class LetteringReader {
     struct Read {
         std::optional<writer::Text> text;
         Message fault;
+        std::optional<writer::CopiedPicture> copy;
+        SmallPicture picture;  ///< of another file than the one before; else empty
     };
     Read read(const writer::TextRequest& request);
 
-    writer::TextRequest asked_;  // of the last reading
-    writer::TextReader reader_;  // used by one thread at a time
+    writer::TextRequest asked_;    // of the last reading
+    writer::TextReader reader_;    // used by one thread at a time
+    std::filesystem::path shown_;  // picture that was given last; likewise
     std::future<Read> reading_;
 };
 

@@ -127,6 +127,19 @@ std::string place_words(const Writing& w, const stroke::Placement& p) {
     return words;
 }
 
+std::string quoted(const std::string& text) {
+    std::string out = "'";
+    for (const char c : text) {
+        if (c == '\n')
+            out += "\\n";
+        else if (c == '\'')
+            out += "'\\''";
+        else
+            out += c;
+    }
+    return out + "'";
+}
+
 bool has_widths(const Writing& w) {
     return std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return t.line_width > 0 && !t.pressed; });
 }

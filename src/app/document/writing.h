@@ -61,6 +61,9 @@ std::string place_words(const Writing& writing, const stroke::Placement& placeme
 /// The same for anything flat: without width and areas.
 std::string place_words(const stroke::Placement& placement);
 
+/// Returns a text as one argument of a shell; lines are divided by \\n.
+std::string quoted(const std::string& text);
+
 /// Returns true when the drawing has line widths.
 bool has_widths(const Writing& writing);
 

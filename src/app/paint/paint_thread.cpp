@@ -25,6 +25,7 @@ PaintThread::PaintThread(PaintWork work)
       journal_(context_, strokes_),
       outside_(context_),
       carried_(context_.work.autosave.attachments(io::kReferences)),
+      carried_copies_(context_.work.autosave.attachments(io::kCopies)),
       part_names_(stroke::part_names(*context_.work.model->mesh)) {
     thread_ = std::thread([this] { run(); });
 }

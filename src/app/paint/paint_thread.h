@@ -50,6 +50,8 @@ class PaintThread {
     render::MapPixels take_pixels() { return std::move(context_.work.pixels); }
     /// Reference images of the project when it was opened.
     const std::vector<io::Attachment>& carried_references() const { return carried_; }
+    /// Copied characters of the project when it was opened.
+    const std::vector<io::Attachment>& carried_copies() const { return carried_copies_; }
     /// Returns figures of the model's atlas; nullptr while they are measured. The first call starts that.
     const atlas::AtlasReport* atlas_report();
 
@@ -65,7 +67,7 @@ class PaintThread {
     JournalEditor journal_;
     OutsideChanges outside_;
     CommandQueue queue_;
-    std::vector<io::Attachment> carried_;
+    std::vector<io::Attachment> carried_, carried_copies_;
     std::vector<std::string> part_names_;
     std::shared_ptr<const mesh::SurfaceQuery> surface_;  ///< of the last `take`
     std::shared_future<atlas::AtlasReport> measured_;

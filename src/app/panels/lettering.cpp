@@ -55,7 +55,8 @@ void text_field(Ui& ui, Lettering& l, bool take_keyboard) {
                               ImGuiInputTextFlags_CallbackResize, grow, &text);
     if (ImGui::IsKeyPressed(ImGuiKey_Escape)) text = before;
     ui.mark("Text");
-    ui.hint("What is written; Enter begins a new line");
+    ui.hint(l.wanted.like.empty() ? "What is written; Enter begins a new line"
+                                  : "The name of the copied character, or nothing");
 }
 
 void fault_line(Ui& ui, const Message& fault) {
@@ -96,6 +97,42 @@ void source_row(Ui& ui, Lettering& l, FileDialog& files) {
     if (ui.button("\xc3\x97##glyphs", "Only the characters that are shipped", 34)) l.wanted.glyphs.clear();
 }
 
+/// The picture that is copied; or where it is chosen, beside those that the project keeps.
+void copy_row(Session& s, Lettering& l) {
+    Ui& ui = s.ui;
+    const float gap = ImGui::GetStyle().ItemSpacing.x, all = ImGui::GetContentRegionAvail().x;
+    const bool copies = !l.wanted.like.empty();
+    const bool aside = copies || !l.kept.empty();
+    const float room = aside ? all - ui.px(34) - gap : all;
+    const std::string title =
+        copies ? ui.fitted(l.wanted.like.filename().string(), room - 2 * ImGui::GetStyle().FramePadding.x)
+               : ui.tr("Copy a picture...");
+    if (ImGui::Button((title + "##like").c_str(), ImVec2(room, 0)))
+        s.dialogs.file.show(FileDialog::Purpose::copied_picture, copies ? l.wanted.like.parent_path() : "");
+    ui.mark("Copy a picture...");
+    ui.hint("A photo, a scan or a rubbing of one character, which is written as it is there");
+    if (!aside) return;
+    ImGui::SameLine();
+    if (copies) {
+        if (ui.button("\xc3\x97##like", "Writes a text again", 34)) copy_picture(l, "");
+        return;
+    }
+    if (ui.button("\xe2\x96\xbe##kept", "Characters that were copied for this project", 34)) ImGui::OpenPopup("kept");
+    if (!ImGui::BeginPopup("kept")) return;
+    ui.in_menu = true;
+    for (const KeptCopy& copy : l.kept) {
+        const std::string name = copy.name + (copy.name.empty() ? "" : "  ") + copy.file.filename().string();
+        if (ImGui::Selectable((name + "##" + copy.id).c_str())) {
+            take_kept_copy(s, copy);
+            ui.mark("kept " + name);
+            break;
+        }
+        ui.mark("kept " + name);
+    }
+    ui.in_menu = false;
+    ImGui::EndPopup();
+}
+
 void direction_row(Ui& ui, writer::Direction& direction) {
     using enum writer::Direction;
     struct Choice {
@@ -117,7 +154,8 @@ void direction_row(Ui& ui, writer::Direction& direction) {
     ImGui::PopStyleVar();
 }
 
-/// Moves the window into the view, which may have changed.
+}  // namespace
+
 void keep_in_view(const ViewState& view, float pad) {
     const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
     const auto left = static_cast<float>(view.area.x) + pad, top = static_cast<float>(view.area.y) + pad;
@@ -126,8 +164,6 @@ void keep_in_view(const ViewState& view, float pad) {
     const ImVec2 kept(std::clamp(at.x, left, std::max(left, right)), std::clamp(at.y, top, std::max(top, low)));
     if (kept.x != at.x || kept.y != at.y) ImGui::SetWindowPos(kept);
 }
-
-}  // namespace
 
 void lettering_panel(Session& s) {
     if (s.tools.active != Tool::text || !s.paint_thread) return;
@@ -148,8 +184,9 @@ void lettering_panel(Session& s) {
     text_field(ui, l, ImGui::IsWindowAppearing() && l.wanted.text.empty() && !s.reported.file.viewing);
     style_row(ui, l);
     direction_row(ui, l.direction);
-    source_row(ui, l, s.dialogs.file);
-    if (!l.wanted.glyphs.empty())
+    if (l.wanted.like.empty()) source_row(ui, l, s.dialogs.file);
+    copy_row(s, l);
+    if (!l.wanted.glyphs.empty() && l.wanted.like.empty())
         ui.toggle("To their outlines", l.fit,
                   "Strokes are fitted until their ink covers the outlines that the source states");
     ui.toggle("Snap", s.tools.snap, "To the plane of symmetry and level with other drawings; Ctrl places it freely");

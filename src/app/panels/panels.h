@@ -97,10 +97,14 @@ MenuChoice menu_bar(const MenuParts& s);
 void tool_options(const OptionParts& s, float left, float top, float width);
 /// The column of tools at the window's edge.
 void tool_strip(Session& s, float top, float bottom, float left);
+/// Moves the window that is drawn into the view, which may have changed. `pad`: pixels to its edges.
+void keep_in_view(const ViewState& view, float pad);
 /// Fields for the place of a drawing or a text.
 void place_fields(Ui& ui, ToolState& tools);
 /// The text that is written, over the view, while its tool is active.
 void lettering_panel(Session& s);
+/// The strokes of a character copied from a picture, over the view, while they are corrected.
+void copied_strokes_panel(Session& s);
 /// Settings of the active tool, the brush and the ink.
 void tool_panel(Session& s, float top, float bottom, float left);
 /// In place of the tools: recolouring of inks and the shown substrate.
@@ -123,6 +127,10 @@ void journal_section(const JournalParts& s);
 struct Savings {
     float compact = 0, tight = 0;
 };
+/// The brushes in their families, and a stroke of the chosen one.
+Savings brush_rack(Session& s, ToolRoom room);
+/// All brushes with a stroke of each, over the view, when shown.
+void brush_browser(Session& s);
 Savings ink_section(const InkParts& s, ToolRoom room);
 /// Chooses a colour by its hex code. Its match becomes the ink.
 void set_colour(Session& s, const std::string& hex);

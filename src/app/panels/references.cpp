@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/document/small_picture.h"
 #include "app/panels/panels.h"
 #include "app/widgets/icons.h"
 #include "io/image/image.h"
@@ -20,46 +21,13 @@ void keep_reference(Session& s, const ReferenceImage& r) {
     s.paint_thread->post(AttachToProject{io::kReferences, to_attachment(r)});
 }
 
-// RGB of the picture, made smaller by whole steps until it suits a graphics card.
-std::vector<std::uint8_t> fitted_pixels(const io::Image8& image, int step, int width, int height) {
-    std::vector<std::uint8_t> rgb(static_cast<std::size_t>(3) * static_cast<std::size_t>(width) *
-                                  static_cast<std::size_t>(height));
-    const auto c = static_cast<std::size_t>(image.channels);
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            for (std::size_t k = 0; k < 3; ++k) {
-                unsigned sum = 0;
-                for (int j = 0; j < step; ++j)
-                    for (int i = 0; i < step; ++i) {
-                        const std::size_t at =
-                            static_cast<std::size_t>(y * step + j) * static_cast<std::size_t>(image.width) +
-                            static_cast<std::size_t>(x * step + i);
-                        sum += image.pixels[c * at + (c < 3 ? 0 : k)];
-                    }
-                rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) +
-                    k] = static_cast<std::uint8_t>(sum / static_cast<unsigned>(step * step));
-            }
-    return rgb;
-}
-
 unsigned reference_texture(Session& s, ReferenceImage& r) {
     if (r.texture || r.broken) return r.texture;
     try {
         const io::Image8 image = io::decode_image8(r.bytes, r.name, std::size_t{1} << 26);
         r.pixels_across = image.width;
         r.pixels_down = image.height;
-        const int step = 1 + (std::max(image.width, image.height) - 1) / kMostAcross,
-                  width = std::max(1, image.width / step), height = std::max(1, image.height / step);
-        const std::vector<std::uint8_t> rgb =
-            fitted_pixels(image, image.width < step || image.height < step ? 1 : step, width, height);
-        glGenTextures(1, &r.texture);
-        glBindTexture(GL_TEXTURE_2D, r.texture);
-        glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, width, height, 0, GL_RGB, GL_UNSIGNED_BYTE, rgb.data());
-        glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-        glGenerateMipmap(GL_TEXTURE_2D);
-        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+        r.texture = upload(small_picture(image, kMostAcross));
     } catch (const std::exception& error) {
         r.broken = true;
         show_message(s.status, message_of(error));

@@ -2,184 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <tuple>
 
 #include "app/panels/panels.h"
-#include "brush/tuft/tuft.h"
 #include "core/system/files.h"
 #include "core/text/units.h"
 
 namespace tuft::app {
 namespace {
-
-// Pixels of a brush at a scale of 1, by the room that there is.
-constexpr float kRackHeights[] = {54, 40, 30};
-
-// Sorts of hair as they look, sRGB; a brush of another sort is grey.
-unsigned hair_colour(const std::string& sort) {
-    if (sort == "goat") return IM_COL32(240, 236, 226, 255);
-    if (sort == "wolf") return IM_COL32(196, 128, 62, 255);
-    if (sort == "sponge" || sort == "leaf") return IM_COL32(226, 190, 112, 255);
-    if (sort == "mixed") return IM_COL32(222, 184, 138, 255);
-    return IM_COL32(170, 172, 178, 255);
-}
-
-// A wide tuft from its broad side: from edge to edge of the ferrule the end of its hair, which leans in a fan.
-void draw_wide_tuft_icon(const Ui& ui, const brush::Preset& preset, unsigned hair, ImVec2 at, float width,
-                         float height) {
-    ImDrawList* draw = ImGui::GetWindowDrawList();
-    constexpr double longest = 0.052;
-    const double widest = preset.width + 2 * preset.length * std::sin(preset.splay);
-    const auto scale = static_cast<float>(std::min(height * 0.74 / longest, (width - ui.px(3)) / widest));
-    const float x = at.x + 0.5f * width, top = at.y + 0.19f * height;
-    constexpr int n = 24;
-    std::vector<ImVec2> roots, ends;
-    for (int i = 0; i <= n; ++i) {
-        const double s = 2.0 * i / n - 1, lean = preset.splay * s;
-        const double toe = preset.toe * (1 - std::sqrt(std::max(0.0, 1 - s * s)));
-        const double length = preset.length - toe - 0.5 * preset.slant * (1 - s);
-        const auto root = x + static_cast<float>(0.5 * preset.width * s) * scale;
-        roots.emplace_back(root, top);
-        ends.emplace_back(root + static_cast<float>(length * std::sin(lean)) * scale,
-                          top + static_cast<float>(length * std::cos(lean)) * scale);
-    }
-    const ImDrawListFlags flags = draw->Flags;
-    draw->Flags &= ~ImDrawListFlags_AntiAliasedFill;
-    for (std::size_t i = 0; i < n; ++i) draw->AddQuadFilled(roots[i], roots[i + 1], ends[i + 1], ends[i], hair);
-    draw->Flags = flags;
-    std::vector<ImVec2> outline = roots;
-    outline.insert(outline.end(), ends.rbegin(), ends.rend());
-    draw->AddPolyline(outline.data(), static_cast<int>(outline.size()), IM_COL32(70, 52, 36, 255), ImDrawFlags_Closed,
-                      1.0f);
-    const float half = static_cast<float>(0.5 * preset.width) * scale + ui.px(0.8f);
-    draw->AddRectFilled(ImVec2(x - half, at.y + 0.11f * height), ImVec2(x + half, top), IM_COL32(150, 152, 160, 255),
-                        1.5f);
-    draw->AddRectFilled(ImVec2(x - 0.4f * half, at.y + 0.02f * height), ImVec2(x + 0.4f * half, at.y + 0.11f * height),
-                        IM_COL32(122, 78, 38, 255), 1.5f);
-}
-
-// The tuft's outline, ferrule above, tip below.
-void draw_tuft_icon(const Ui& ui, const brush::Preset& preset, unsigned hair, ImVec2 at, float width, float height) {
-    if (brush::has_broad_side(preset)) return draw_wide_tuft_icon(ui, preset, hair, at, width, height);
-    ImDrawList* draw = ImGui::GetWindowDrawList();
-    constexpr double longest = 0.048;  // metres that fill the icon
-    const bool foam = brush::is_foam(preset);
-    const auto most = foam ? (width - ui.px(3)) / static_cast<float>(2.7 * preset.radius) : 1e9f;
-    const auto scale = std::min(static_cast<float>(height * 0.74f / longest), most);
-    const float x = at.x + 0.5f * width, top = at.y + 0.19f * height;
-    constexpr int n = 24;
-    std::vector<ImVec2> outline;
-    for (int side = 0; side < 2; ++side)
-        for (int i = 0; i <= n; ++i) {
-            const double u = static_cast<double>(side ? n - i : i) / n;
-            // A little wider than to scale, so that small ones are seen.
-            const auto r =
-                (static_cast<float>(brush::rest_radius(preset, u)) * 1.35f * scale + (u < 0.97 ? ui.px(0.8f) : 0)) *
-                (side ? -1.0f : 1.0f);
-            outline.emplace_back(x + r, top + static_cast<float>(u * preset.length) * scale);
-        }
-    // Smoothed edges of the pieces would show between them: the outline smooths the whole.
-    const ImDrawListFlags flags = draw->Flags;
-    draw->Flags &= ~ImDrawListFlags_AntiAliasedFill;
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::size_t j = outline.size() - 1 - i;
-        draw->AddQuadFilled(outline[i], outline[i + 1], outline[j - 1], outline[j], hair);
-    }
-    draw->Flags = flags;
-    draw->AddPolyline(outline.data(), static_cast<int>(outline.size()), IM_COL32(70, 52, 36, 255), ImDrawFlags_Closed,
-                      1.0f);
-    const auto r = static_cast<float>(brush::rest_radius(preset, 0)) * scale * (foam ? 0.35f : 1.5f) + ui.px(0.8f);
-    if (foam) {
-        // Its pores, on a spiral.
-        for (int i = 1; i < 22; ++i) {
-            const float turn = 2.4f * static_cast<float>(i), out = 0.19f * std::sqrt(static_cast<float>(i));
-            const auto half = 1.35f * static_cast<float>(preset.radius) * scale,
-                       tall = 0.5f * static_cast<float>(preset.length) * scale;
-            draw->AddCircleFilled(ImVec2(x + out * half * std::cos(turn), top + tall + out * tall * std::sin(turn)),
-                                  ui.px(0.6f + 0.4f * static_cast<float>(i % 3)), IM_COL32(122, 84, 36, 255), 6);
-        }
-    }
-    draw->AddRectFilled(ImVec2(x - r, at.y + 0.05f * height), ImVec2(x + r, top), IM_COL32(122, 78, 38, 255), 1.5f);
-}
-
-void brush_cell(Ui& ui, BrushSettings& brush, const std::string& name, const std::string& sort, ImVec2 size) {
-    const auto [width, height] = size;
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const bool chosen = name == brush::sized_name(brush.preset).base;
-    if (ImGui::InvisibleButton(name.c_str(), ImVec2(width, height))) brush.preset = name;
-    ui.mark(name);
-    const bool over = ImGui::IsItemHovered();
-    ImDrawList* draw = ImGui::GetWindowDrawList();
-    const ImVec2 end(at.x + width, at.y + height);
-    if (chosen || over)
-        draw->AddRectFilled(at, end, ImGui::GetColorU32(chosen ? ImGuiCol_Header : ImGuiCol_FrameBgHovered), ui.px(4));
-    if (chosen) draw->AddRect(at, end, ui.accent, ui.px(4), 0, ui.px(2));
-    const brush::Preset& preset = shipped_brush(name);
-    draw_tuft_icon(ui, preset, hair_colour(sort), at, width, height);
-    if (!over) return;
-    char text[256];
-    if (brush::has_broad_side(preset))
-        std::snprintf(text, sizeof text, ui.tr("%.0f mm long, %.0f mm wide, %.1f mm thick"), preset.length * 1e3,
-                      preset.width * 1e3, 2 * preset.radius * 1e3);
-    else
-        std::snprintf(text, sizeof text, ui.tr("%.0f mm long, %.1f mm thick"), preset.length * 1e3,
-                      2 * preset.radius * 1e3);
-    ImGui::SetTooltip("%s\n%s", ui.tr(name.c_str()), text);
-}
-
-// All brushes hang in rows, a group for each sort of hair from small to large, its name under it; sorts with a single
-// brush are a group together.
-Savings brush_rack(Ui& ui, BrushSettings& brush, ToolRoom room) {
-    if (!ui.section("Brush", true, ui.tr(brush::sized_name(brush.preset).base.c_str()))) return {};
-    std::map<std::string, std::vector<std::string>> by_sort;
-    for (const std::string& name : brush.presets) by_sort[name.substr(0, name.find('-'))].push_back(name);
-    std::vector<std::pair<std::string, std::vector<std::string>>> groups;
-    std::vector<std::string> single, wide;
-    for (auto& [sort, names] : by_sort) {
-        if (names.size() == 1)
-            (brush::has_broad_side(shipped_brush(names.front())) ? wide : single).push_back(names.front());
-        else
-            groups.emplace_back(sort, names);
-    }
-    if (!wide.empty()) groups.emplace_back("flat", wide);
-    if (!single.empty()) groups.emplace_back("other", single);
-    const bool named = room != ToolRoom::tight;
-    const float all = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX(), gap = named ? ui.px(8) : 0,
-                letters = 0.8f * ImGui::GetFontSize();
-    // Tufts are thin: as many fit in a row as have room for one each. Where there is little, they stand group by group
-    // without a gap.
-    const float cell = std::min(ui.px(26), (all - 3 * gap) / (named ? 10.0f : 11.0f)),
-                height = ui.px(kRackHeights[static_cast<int>(room)]);
-    const float row = height + (named ? 1.2f * letters : 0);
-    float x = 0, y = ImGui::GetCursorPosY(), rows = 1;
-    for (auto& [sort, names] : groups) {
-        std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
-            return shipped_brush(a).length < shipped_brush(b).length;
-        });
-        const char* title = ui.tr(sort.c_str());
-        const float text = ImGui::GetFont()->CalcTextSizeA(letters, 1e9f, 0, title).x;
-        const float width = cell * static_cast<float>(names.size()), taken = std::max(width, text);
-        if (named && x > 0 && x + width > all + 1) x = 0, y += row, ++rows;
-        const float here = x;
-        for (const std::string& name : names) {
-            if (x + cell > all + 1) x = 0, y += row, ++rows;
-            ImGui::SetCursorPos(ImVec2(left + x, y));
-            brush_cell(ui, brush, name, name.substr(0, name.find('-')), {cell, height});
-            x += cell;
-        }
-        if (!named) continue;
-        x = here + taken + gap;
-        ImGui::SetCursorPos(ImVec2(left + here, y + height));
-        const ImVec2 at = ImGui::GetCursorScreenPos();
-        const float middle = std::min(at.x + 0.5f * (width - text), at.x + all - here - text);
-        ImGui::GetWindowDrawList()->AddText(ImGui::GetFont(), letters, ImVec2(middle, at.y), ui.faint, title);
-    }
-    ImGui::SetCursorPos(ImVec2(left, y + row));
-    ImGui::Dummy(ImVec2(0, 0));
-    return {rows * ui.px(kRackHeights[0] - kRackHeights[1]),
-            rows * (ui.px(kRackHeights[0] - kRackHeights[2]) + 1.2f * letters)};
-}
 
 // The curve from a pen's pressure to the brush's depth; its ends and its middle can be dragged. The dot
 // is what the pen does now.
@@ -344,7 +173,7 @@ void tool_panel(Session& s, float top, float bottom, float left) {
     writing_section(s.ui, s.tools, s.dialogs.file);
     mask_section(s);
     const bool brushes = s.tools.active != Tool::fill && s.tools.active != Tool::pick && s.tools.active != Tool::mask;
-    if (brushes) add(brush_rack(s.ui, s.brush, room));
+    if (brushes) add(brush_rack(s, room));
     if (s.tools.active != Tool::mask && s.tools.active != Tool::eraser)
         add(ink_section({s.ui, s.brush, s.colours, *s.paint_thread, s.reported, s.dialogs.file}, room));
     if (brushes) pointer_section(s.ui, s.tools, s.panels, brush_can_be_turned(s.brush));

@@ -34,7 +34,8 @@
 ///                           text, text-style, text-glyphs (file or folder; "" for the shipped characters),
 ///                           text-direction (horizontal, vertical, rim, curve), text-size (mm), text-spacing,
 ///                           text-line-spacing, text-turn (degrees, anticlockwise), text-brush (chosen, style),
-///                           text-fit,
+///                           text-fit, text-like (picture of a character), copy-threshold, copy-cut, copy-order (of
+///                           its strokes, as the options of tuft write say them),
 ///                           arm (on, off), arm-source (simulated, service, recording), arm-preset, arm-hand,
 ///                           arm-recording, arm-port, arm-gain, arm-limit (N), arm-scale, arm-view (on, off),
 ///                           arm-pause, arm-clutch, arm-palette, arm-panel, arm-emergency (on, off), scale,

@@ -28,9 +28,14 @@ namespace {
 constexpr double kPartOfDiagonal = 0.02, kPartOfMiddle = 0.25;
 constexpr double kNearEnough = 1.5;       // times the wanted width, up or down, that a brush keeps its own size
 constexpr std::size_t kMostModels = 200;  // remembered
+constexpr std::size_t kMostOwn = 100;     // brushes of files
 
 fs::path memory_path() {
     return state_folder() / "brushes";
+}
+
+fs::path own_path() {
+    return state_folder() / "own_brushes";
 }
 
 // Brush and model, the newest first.
@@ -71,6 +76,31 @@ const brush::Preset& shipped_brush(const std::string& name) {
     auto at = known.find(name);
     if (at == known.end()) at = known.emplace(name, brush::load_preset(name)).first;
     return at->second;
+}
+
+std::vector<std::string> remembered_own_brushes() {
+    std::vector<std::string> files;
+    std::ifstream in(own_path());
+    for (std::string file; files.size() < kMostOwn && std::getline(in, file);)
+        if (loads(file)) files.push_back(file);
+    return files;
+}
+
+void take_own_brush(BrushSettings& brush, const fs::path& file) {
+    const std::string name = fs::absolute(file).lexically_normal().string();
+    brush::load_preset(name);
+    if (std::find(brush.presets.begin(), brush.presets.end(), name) == brush.presets.end()) {
+        brush.presets.push_back(name);
+        std::string text;
+        for (const std::string& preset : brush.presets)
+            if (preset.find('/') != std::string::npos) text += preset + "\n";
+        try {
+            write_file(own_path(), text.data(), text.size());
+        } catch (const Error&) {
+            // It is in the list for this run then.
+        }
+    }
+    brush.preset = name;
 }
 
 double first_line_width(const Box& box) {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "app/document/tried_strokes.h"
 #include "app/widgets/status_message.h"
 #include "brush/preset/preset.h"
 #include "core/geometry/types.h"
@@ -17,7 +19,7 @@ struct StrokeLine;
 
 /// The chosen brush, its ink and how it paints.
 struct BrushSettings {
-    std::vector<std::string> presets;  ///< names of the shipped brushes
+    std::vector<std::string> presets;  ///< names of the shipped brushes, then files of own ones
     std::string preset = "wolf-medium", ink = "carbon";
     std::string remembered;   ///< brush stored for this model
     bool persistent = false;  ///< hair and ink last from stroke to stroke
@@ -27,11 +29,17 @@ struct BrushSettings {
     std::string tip_ink = "carbon";
     double tip_depth = 0.3;  ///< of the tip's ink, fraction of the tuft's length
     double dip_depth = 1;    ///< of Dip and Wipe, fraction of the tuft's length
+    TriedStrokes tried;      ///< pictures of strokes
     double dip_side = 0;     ///< of Dip and Wipe, fraction of the width from the right flank (> 0) or the left; 0: all
 };
 
-/// Returns a shipped brush, read once.
+/// Returns a brush of the list, read once.
 const brush::Preset& shipped_brush(const std::string& name);
+/// Adds the brush of a TOML file to the list, where it is not in it, takes it, and remembers it for the next start.
+/// Throws `Error` for a file that is no brush.
+void take_own_brush(BrushSettings& brush, const std::filesystem::path& file);
+/// Returns the files of brushes that were added before and can still be read.
+std::vector<std::string> remembered_own_brushes();
 /// Returns the line width in metres for the first brush on a model, and the brush of the same hair as `hair_of` that
 /// draws it at `pressure`.
 double first_line_width(const Box& box);

@@ -62,6 +62,7 @@ void forget_model(Session& s) {
     s.colours.palette.fresh = true;
     s.tools.curve = {};
     s.tools.lettering.curve.clear();
+    s.tools.lettering.kept.clear();
 }
 
 // A model was looked at: the dialog proposes unit and texels.
@@ -84,7 +85,7 @@ void take_inspected(ProjectState& project, Inspected inspected, const PaintThrea
 }  // namespace
 
 void open_path(Session& s, const fs::path& path) {
-    if (path.extension() == ".toml") return open_ink(s.paint_thread.get(), s.status, path);
+    if (path.extension() == ".toml") return open_brush_or_ink(s, path);
     if (const std::string e = path.extension().string(); e == ".svg" || e == ".inkml") return open_writing(s, path);
     if (const std::string e = lower(path.extension().string());
         e == ".png" || e == ".jpg" || e == ".jpeg" || e == ".tif" || e == ".tiff")
@@ -156,6 +157,8 @@ void take_work(Session& s, PaintWork work) {
     s.view.keep_camera = !source.empty();
     for (const io::Attachment& image : s.paint_thread->carried_references())
         s.view.references.images.push_back(from_attachment(image));
+    for (const io::Attachment& copy : s.paint_thread->carried_copies())
+        s.tools.lettering.kept.push_back(kept_copy(copy));
     HelpState& help = s.panels.help;
     if (help.by_itself && !help.seen && help.step < 0) start_guide(help);
     const Box& bounds = s.paint_thread->model().mesh->bounds;

@@ -32,6 +32,60 @@ fs::path glyphs_beside(const fs::path& file) {
     return one ? file.parent_path() : file;
 }
 
+void keep_copy(Session& s) {
+    std::optional<KeptCopy> copy = copy_to_keep(s.tools.lettering.wanted);
+    if (!copy || s.reported.file.viewing) return;
+    std::vector<KeptCopy>& kept = s.tools.lettering.kept;
+    const auto same = std::find_if(kept.begin(), kept.end(), [&](const KeptCopy& k) { return k.id == copy->id; });
+    if (same == kept.end() && kept.size() >= io::kMostAttachments) return;
+    s.paint_thread->post(AttachToProject{io::kCopies, to_attachment(*copy)});
+    if (same == kept.end())
+        kept.push_back(std::move(*copy));
+    else
+        *same = std::move(*copy);
+}
+
+void take_kept_copy(Session& s, const KeptCopy& copy) {
+    Lettering& l = s.tools.lettering;
+    try {
+        copy_picture(l, picture_of(copy));
+        l.wanted.correction = copy.correction;
+        set_text(l, copy.name);
+    } catch (const std::exception& error) {
+        show_message(s.status, message_of(error));
+    }
+}
+
+void save_copy(Session& s, const fs::path& path) {
+    const Lettering& l = s.tools.lettering;
+    if (!l.text || l.wanted.like.empty() || l.text->lines.empty() || l.text->lines.front().empty()) return;
+    try {
+        const std::string json = writer::hanzi_json_of(l.text->lines.front().front());
+        write_file(path, json.data(), json.size());
+        show_message(s.status, Message("Saved as {}", path.string()));
+    } catch (const Error& error) {
+        show_message(s.status, error.message());
+    }
+}
+
+void open_brush(Session& s, const fs::path& path) {
+    try {
+        take_own_brush(s.brush, path);
+        show_message(s.status, Message("Brush: {}", path.stem().string()));
+    } catch (const Error& error) {
+        show_message(s.status, error.message());
+    }
+}
+
+void open_brush_or_ink(Session& s, const fs::path& path) {
+    try {
+        brush::load_preset(fs::absolute(path).string());
+    } catch (const Error&) {
+        return open_ink(s.paint_thread.get(), s.status, path);
+    }
+    open_brush(s, path);
+}
+
 void open_ink(PaintThread* work, StatusMessage& status, const fs::path& path) {
     if (!work) return show_message(status, "Open a model first.");
     try {

@@ -17,6 +17,8 @@ struct PanelLayout {
     bool journal_over_tools = false;      ///< without that space: the journal replaces the tools
     bool show_appearance = false;         ///< in place of the tools: recolouring and substrate
     ToolRoom tool_room = ToolRoom::full;  ///< that there is for them
+    bool show_brushes = false;            ///< the window with all brushes
+    char brush_filter[64] = "";           ///< letters of the names that it lists
     int pen_curve_handle = 1;             ///< selected handle of the pen curve: 0 lower end, 1 middle, 2 upper end
     HelpState help;
 };

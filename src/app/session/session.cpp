@@ -81,6 +81,9 @@ void poll_session(Session& s) {
     if (opened) choose_brush(s.brush, *s.paint_thread, s.journal.lines, s.tools.pointer.pressure);
     poll_colour(s.colours, s.brush);
     s.tools.letters.update(s.tools.lettering);
+    // Painting a stroke of the hand comes first.
+    s.brush.tried.update(!s.tools.pointer_down && !s.project.opening.running() &&
+                         (!s.paint_thread || s.paint_thread->idle()));
 }
 
 void poll_paint_thread(Session& s) {

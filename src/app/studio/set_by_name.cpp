@@ -123,6 +123,15 @@ constexpr Setting kToolSettings[] = {
      [](Session& s, const SettingValue& v) {
          s.tools.lettering.style_brush = v.one_of({"chosen", "style"}) == 1;
      }},
+    {"text-like", [](Session& s, const SettingValue& v) { copy_picture(s.tools.lettering, v.text); }},
+    {"copy-threshold",
+     [](Session& s, const SettingValue& v) {
+         s.tools.lettering.wanted.correction = {
+             .threshold = v.within(-writer::kMostThreshold, writer::kMostThreshold), .cuts = {}, .order = {}};
+     }},
+    {"copy-cut",
+     [](Session& s, const SettingValue& v) { s.tools.lettering.wanted.correction.cuts = writer::parse_cuts(v.text); }},
+    {"copy-order", [](Session& s, const SettingValue& v) { s.tools.lettering.wanted.correction.order = v.text; }},
     {"text-fit", [](Session& s, const SettingValue& v) { s.tools.lettering.fit = v.on; }},
     {"mask-kind", [](Session& s, const SettingValue& v) { s.masks.choice.kind = stroke::mask_kind_of(v.text); }},
     {"mask-within", [](Session& s, const SettingValue& v) { s.masks.choice.within = v.within(0, 180) * kDegree; }},

@@ -36,6 +36,7 @@ constexpr double kPictureWait = 3;  // seconds that leaving waits at most for th
 Studio::Studio() : scene_(session_), input_(session_, scene_.comparison()), picture_(session_) {
     Session& s = session_;
     s.brush.presets = brush::list_presets();
+    for (std::string& file : remembered_own_brushes()) s.brush.presets.push_back(std::move(file));
     s.colours.shipped = ink::list_inks();
     s.colours.substrates = ink::list_substrates();
     std::error_code ec;
@@ -52,6 +53,7 @@ Studio::Studio() : scene_(session_), input_(session_, scene_.comparison()), pict
 Studio::~Studio() {
     finish();
     session_.project.start_page.pictures.release();
+    session_.brush.tried.release();
 }
 
 void Studio::set(const std::string& name, const std::string& value) {
@@ -66,6 +68,9 @@ void Studio::drop_graphics() {
     for (ReferenceImage& image : session_.view.references.images) image.texture = 0;
     session_.journal.snapshots.texture = 0;
     session_.project.start_page.pictures.release();
+    session_.brush.tried.release();
+    session_.tools.lettering.copy.texture = 0;
+    session_.tools.lettering.copy.fresh = true;
 }
 
 void Studio::make_graphics() {
@@ -99,7 +104,7 @@ double Studio::patience() const {
     if (s.project.opening.running() || !s.reported.progress.busy.empty()) return kProgressEvery;
     if (!is_settled(s) || s.arm.arm) return kInkEvery;
     if (now_ - last_event_ < kStillAfter) return kStillEvery;
-    return s.project.start_page.pictures.busy() ? 0.1 : 0.5;
+    return s.project.start_page.pictures.busy() || s.brush.tried.busy() ? 0.1 : 0.5;
 }
 
 void Studio::layout(int width, int height) {
@@ -213,6 +218,8 @@ void Studio::draw_side_panels() {
     upload_thumbnails(s, still);
     colour_panel(s);
     lettering_panel(s);
+    copied_strokes_panel(s);
+    brush_browser(s);
     arm_panel(s);
     references_over_view(s);
     swipe_line(s);
@@ -262,6 +269,12 @@ void Studio::take_file(const fs::path& path) {
         case FileDialog::Purpose::glyphs:
             s.tools.lettering.wanted.glyphs = glyphs_beside(path);
             return;
+        case FileDialog::Purpose::brush:
+            return open_brush(s, path);
+        case FileDialog::Purpose::copied_picture:
+            return copy_picture(s.tools.lettering, path);
+        case FileDialog::Purpose::save_copy:
+            return save_copy(s, path);
         case FileDialog::Purpose::reference:
             return pin_reference(s, path);
         case FileDialog::Purpose::ink:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/session/open_files.h"
 #include "app/tools/aim.h"
 #include "core/text/units.h"
 
@@ -105,12 +106,13 @@ void LetteringTool::place(const PlacingSpot& spot) {
                           .place = place_at(spot),
                           .brush = l.style_brush ? "" : s.brush.preset,
                           .ink = s.brush.ink,
-                          .fit = l.fit,
+                          .fit = l.fitted(),
                           .group = group_settings(s, l.text->group)};
         if (const auto* on = std::get_if<LetteringPath>(&command.place))
             writer::places_along(command.text, on->path, on->middle);  // a text that is too long is refused here
         show_message(s.status, Message("Written: {}", place_words(l, command.place, s.brush.preset)));
         s.paint_thread->post(std::move(command));
+        if (!l.wanted.like.empty()) keep_copy(s);
     } catch (const Error& error) {
         show_message(s.status, error.message());
     }

@@ -64,8 +64,8 @@ void remember_folder(const fs::path& folder) {
 }
 
 bool FileDialog::reads() const {
-    constexpr Purpose kWrites[] = {Purpose::save, Purpose::export_model, Purpose::save_ink, Purpose::decals,
-                                   Purpose::film};
+    constexpr Purpose kWrites[] = {Purpose::save,   Purpose::export_model, Purpose::save_ink,
+                                   Purpose::decals, Purpose::film,         Purpose::save_copy};
     return std::find(std::begin(kWrites), std::end(kWrites), purpose_) == std::end(kWrites);
 }
 
@@ -74,13 +74,15 @@ bool FileDialog::suits(const fs::path& file) const {
     if (purpose_ == Purpose::save) return e == ".tuft";
     if (purpose_ == Purpose::arm_recording) return e == ".csv";
     if (purpose_ == Purpose::export_model) return is_one_of(e, {".glb", ".gltf", ".obj", ".png", ".exr", ".inkml"});
-    if (purpose_ == Purpose::ink || purpose_ == Purpose::save_ink) return e == ".toml";
+    if (purpose_ == Purpose::ink || purpose_ == Purpose::save_ink || purpose_ == Purpose::brush) return e == ".toml";
     if (purpose_ == Purpose::decals) return is_one_of(e, {".pdf", ".svg", ".dxf"});
     if (purpose_ == Purpose::film) return is_one_of(e, {".mp4", ".gif"});
     if (purpose_ == Purpose::writing) return is_one_of(e, {".svg", ".inkml"});
     if (purpose_ == Purpose::glyphs)
         return is_one_of(e, {".json", ".svg", ".txt", ".ttf", ".otf", ".ttc", ".woff", ".woff2"});
-    if (purpose_ == Purpose::reference) return is_one_of(e, {".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff"});
+    if (purpose_ == Purpose::save_copy) return e == ".json";
+    if (purpose_ == Purpose::reference || purpose_ == Purpose::copied_picture)
+        return is_one_of(e, {".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff"});
     return (e == ".tuft" && purpose_ != Purpose::revise) || io::is_model_file(file);
 }
 
@@ -169,6 +171,7 @@ void FileDialog::draw_places(Ui& ui) {
     if (ImGui::Selectable(ui.tr("Samples")))
         go(data_folder() / (purpose_ == Purpose::writing ? "samples/strokes"
                             : purpose_ == Purpose::ink   ? "models/inks"
+                            : purpose_ == Purpose::brush ? "models/brushes"
                                                          : "models"));
     std::error_code ec;
     if (ImGui::Selectable(ui.tr("Here"))) go(fs::current_path(ec));
@@ -408,7 +411,7 @@ std::optional<fs::path> FileDialog::draw(Ui& ui, Pictures& pictures) {
     }
     const bool entered = draw_name(ui);
     ImGui::SameLine();
-    const bool saves = purpose_ == Purpose::save || purpose_ == Purpose::save_ink;
+    const bool saves = purpose_ == Purpose::save || purpose_ == Purpose::save_ink || purpose_ == Purpose::save_copy;
     const char* action = ask_replace_ ? "Replace" : reads() ? "Open" : saves ? "Save" : "Export";
     if (ui.button("Cancel", nullptr, 100)) shown_ = false;
     ImGui::SameLine();

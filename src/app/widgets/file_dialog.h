@@ -29,7 +29,10 @@ class FileDialog {
         arm_recording,
         decals,
         film,
-        glyphs
+        glyphs,
+        brush,
+        copied_picture,
+        save_copy
     };
 
     void show(Purpose purpose, const std::filesystem::path& start);

@@ -27,7 +27,7 @@ constexpr ManualPage kPages[] = {
      "* {panels}: folds the panels away.\n"},
     {"Brush and hand",
      "The rack holds goat, mixed and wolf hair from small to large; \"Tuft size\" makes any of them larger or "
-     "smaller.\n"
+     "smaller. \"All...\" lists every brush with a stroke that it painted.\n"
      "* {lighter} and {heavier} press less and more, {smaller} and {larger} change the size.\n"
      "* Arrow keys lean the holder, {upright} holds it upright.\n"
      "* A flat brush turns about its holder by Alt and wheel, {roll-anticlockwise} and {roll-clockwise}; \"Follow the "
@@ -57,7 +57,9 @@ constexpr ManualPage kPages[] = {
      "straight, as seen from before the place. Strokes scale with the drawing.\n"
      "* {write}: a text that you type follows the cursor, and a click writes it: in lines, in columns from right to "
      "left, round the model, or along the curve whose points were set last. Its characters are made stroke by stroke "
-     "for the brush; they come with the program, or from fonts and folders of yours.\n"
+     "for the brush; they come with the program, or from fonts and folders of yours. "
+     "A character can also be copied from a photo or a rubbing: its strokes are numbered over the picture, and a click "
+     "on one reverses, joins, splits or removes it.\n"
      "A placed drawing is one group in the journal: hidden, moved, inked and deleted as one.\n"
      "It snaps to the plane of symmetry and level with other drawings, along the blue line; Ctrl places it freely. Its "
      "place can be typed.\n"},

@@ -193,6 +193,11 @@ const char* Ui::tr(const char* english) const {
 }
 
 std::string Ui::title(const std::string& name) const {
+    if (const std::size_t slash = name.rfind('/'); slash != std::string::npos) {  // of a file
+        const std::string file = name.substr(slash + 1);
+        const std::size_t toml = file.rfind(".toml");
+        return toml == std::string::npos ? file : file.substr(0, toml) + title(file.substr(toml)).substr(5);
+    }
     const std::size_t star = name.find('*');
     if (star == std::string::npos) return tr(name.c_str());
     char factor[32];
@@ -228,6 +233,10 @@ void Ui::mark(const std::string& name) {
     if (!ImGui::IsRectVisible(a, b)) return;
     if (const auto there = places_.find(name); there != places_.end() && there->second.on_top && !in_menu) return;
     places_[name] = {0.5 * (a.x + b.x), 0.5 * (a.y + b.y), in_menu};
+}
+
+void Ui::mark_at(const std::string& name, float x, float y) {
+    places_[name] = {x, y, in_menu};
 }
 
 const Ui::Place* Ui::find(const std::string& name) const {

@@ -102,6 +102,8 @@ class Ui {
 
     /// Records the position of the last item under a name.
     void mark(const std::string& name);
+    /// Records a point of the window, pixels, under a name.
+    void mark_at(const std::string& name, float x, float y);
     struct Place {
         double x = 0, y = 0;  ///< pixels, centre
         bool on_top = false;  ///< in a menu over the rest

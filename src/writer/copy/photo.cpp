@@ -44,9 +44,14 @@ struct Raster {
     }
 };
 
+/// Pixels along the side of the squares whose means are taken.
+int reduction_of(const io::Image8& p) {
+    return std::max(1, (std::max(p.width, p.height) + kLongest - 1) / kLongest);
+}
+
 /// Luma of Rec. 709 over white, 0–1, as a mean over squares of pixels where the picture is large.
 Raster grey_of(const io::Image8& p) {
-    const int n = std::max(1, (std::max(p.width, p.height) + kLongest - 1) / kLongest);
+    const int n = reduction_of(p);
     Raster out(p.width / n, p.height / n);
     const auto pixel = [&](int x, int y) {
         const std::uint8_t* c = &p.pixels[(std::size_t(y) * p.width + x) * p.channels];
@@ -240,9 +245,14 @@ void clean(Cells& c) {
             for (const std::size_t k : part.cells) c.inside[k] = 1;
 }
 
+/// Units of a pixel, by the box of the ink.
+double units_of(const Vec2& lo, const Vec2& hi) {
+    return kCopiedPart * kSide / std::max(hi.x - lo.x, hi.y - lo.y);
+}
+
 /// Cells over the box (pixels) of the ink.
 Cells cells_of(const Raster& flat, double threshold, const Vec2& lo, const Vec2& hi) {
-    const double units = kCopiedPart * kSide / std::max(hi.x - lo.x, hi.y - lo.y);  // a pixel
+    const double units = units_of(lo, hi);
     Cells c{.lo = Vec2(-kCell * 8), .cell = kCell};
     c.width = c.height = static_cast<int>(kSide / kCell) + 16;
     c.inside.assign(std::size_t(c.width) * c.height, 0);
@@ -312,7 +322,7 @@ std::pair<Vec2, Vec2> keep_character(Raster& flat, double threshold) {
 
 }  // namespace
 
-Cells ink_of(const io::Image8& picture, const std::string& source) {
+PictureInk picture_ink(const io::Image8& picture, const std::string& source, double shift) {
     if (std::min(picture.width, picture.height) < 16 || picture.channels < 1)
         throw Error(source, Message("the picture is smaller than 16 pixels"));
     Raster grey = grey_of(picture);
@@ -331,11 +341,18 @@ Cells ink_of(const io::Image8& picture, const std::string& source) {
     const double contrast = threshold.light - threshold.dark;
     if (contrast < kLeastContrast || contrast * mean < kLeastGrey || threshold.part > kMostInk)
         throw Error(source, Message("no ink stands out from the paper in this picture"));
-    const auto [lo, hi] = keep_character(flat, threshold.at);
+    shift = std::clamp(shift, -kMostThreshold, kMostThreshold);
+    const double at = std::lerp(threshold.at, shift < 0 ? threshold.dark : threshold.light, std::abs(shift));
+    const auto [lo, hi] = keep_character(flat, at);
     if (!(hi.x > lo.x)) throw Error(source, Message("no ink stands out from the paper in this picture"));
-    Cells cells = cells_of(flat, threshold.at, lo, hi);
-    clean(cells);
-    return cells;
+    const int n = reduction_of(picture);
+    PictureInk out{.cells = cells_of(flat, at, lo, hi), .middle = 0.5 * n * (lo + hi), .units = units_of(lo, hi) / n};
+    clean(out.cells);
+    return out;
+}
+
+Cells ink_of(const io::Image8& picture, const std::string& source, double threshold) {
+    return picture_ink(picture, source, threshold).cells;
 }
 
 std::vector<Ring> boundaries(const Cells& c, int passes) {

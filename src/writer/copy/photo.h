@@ -9,6 +9,16 @@
 /// The ink of a picture of one character: a photograph, a scan or a rubbing. Called by `tuft write --like`.
 namespace tuft::writer {
 
+/// The ink of a picture, and where the character's square lies on it.
+struct PictureInk {
+    Cells cells;
+    Vec2 middle{0};    ///< pixels of the picture, from its upper left corner, of the middle of the square
+    double units = 1;  ///< of a pixel of the picture
+
+    /// Returns the pixel at a point of the square.
+    Vec2 pixel_at(const Vec2& p) const { return middle + Vec2(p.x - 0.5 * kSide, 0.5 * kSide - p.y) / units; }
+};
+
 /// Returns the ink of a picture as cells of 2 units, the box round it in the middle of the character's square.
 ///
 /// Light is the ratio of a pixel to the paper about it, so shading falls out. The paper is the 90th percentile of a
@@ -18,7 +28,14 @@ namespace tuft::writer {
 /// run along more than a tenth of the border are no ink. Specks below a third and holes below a sixth of the square of
 /// the stroke's width are removed, and steps of one cell by majority. Transparent pixels are white. Throws `Error` with
 /// `source` where the picture is smaller than 16 pixels or shows no ink. Cost: linear in the pixels.
-Cells ink_of(const io::Image8& picture, const std::string& source);
+/// `threshold` moves the threshold from Otsu's by that part of the distance to the mean of the ink (< 0) or of the
+/// paper
+/// (> 0), −`kMostThreshold` to `kMostThreshold`: more makes lines thicker.
+PictureInk picture_ink(const io::Image8& picture, const std::string& source, double threshold = 0);
+inline constexpr double kMostThreshold = 0.9;
+
+/// The cells of `picture_ink`.
+Cells ink_of(const io::Image8& picture, const std::string& source, double threshold = 0);
 
 inline constexpr double kCopiedPart = 0.84;  ///< of the square's side: the longer side of the box round the ink
 

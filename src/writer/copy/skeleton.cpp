@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/error.h"
 #include "writer/copy/thinning.h"
 #include "writer/gesture/stroke_line.h"
 
@@ -327,6 +328,34 @@ Skeleton skeleton_of(const Cells& ink) {
     set_ends(s, ink, room);
     cut_corners(s, room);
     return s;
+}
+
+void cut_piece(Skeleton& s, const PieceCut& cut) {
+    if (cut.piece >= s.pieces.size())
+        throw Error(Message("there is no piece {} to cut, only 1 to {}", cut.piece + 1, s.pieces.size()));
+    if (!(cut.at > 0 && cut.at < 1)) throw Error(Message("a piece is cut at a part of its length between 0 and 1"));
+    Piece first = s.pieces[cut.piece], rest;
+    const double at = cut.at * first.length();
+    double along = 0;
+    std::size_t i = 1;
+    for (; i + 1 < first.line.size(); ++i) {
+        const double step = glm::distance(first.line[i], first.line[i - 1]);
+        if (along + step >= at) break;
+        along += step;
+    }
+    const double step = glm::distance(first.line[i], first.line[i - 1]);
+    const Vec2 place = step > 0 ? glm::mix(first.line[i - 1], first.line[i], (at - along) / step) : first.line[i];
+    const auto there = first.line.begin() + static_cast<std::ptrdiff_t>(i);
+    rest.line.assign(there, first.line.end());
+    first.line.erase(there, first.line.end());
+    first.line.push_back(place);
+    rest.line.insert(rest.line.begin(), place);
+    rest.to = first.to, rest.from = first.to = s.nodes.size();
+    rest.half_to = first.half_to;
+    rest.half_from = first.half_to = std::lerp(first.half_from, first.half_to, cut.at);
+    s.nodes.push_back({.at = place, .room = 0, .n_pieces = 2});
+    s.pieces[cut.piece] = std::move(first);
+    s.pieces.push_back(std::move(rest));
 }
 
 }  // namespace tuft::writer

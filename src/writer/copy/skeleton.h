@@ -42,6 +42,18 @@ struct Skeleton {
 /// Cost: cells × half width.
 Skeleton skeleton_of(const Cells& ink);
 
+/// A place where a person cuts a piece.
+struct PieceCut {
+    std::size_t piece = 0;
+    double at = 0.5;  ///< part of the piece's length from its first point, 0–1
+
+    bool operator==(const PieceCut&) const = default;
+};
+
+/// Cuts a piece: it keeps its first part, and the rest is a new piece, the last one. Lines keep their points. Throws
+/// `Error` for a piece that there is not, and for a part that is not within 0 and 1.
+void cut_piece(Skeleton& skeleton, const PieceCut& cut);
+
 /// Distances to the edge of the ink, by places.
 class Room {
   public:

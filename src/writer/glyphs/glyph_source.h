@@ -47,6 +47,9 @@ std::vector<std::vector<Glyph>> glyphs_of(const std::vector<std::u32string>& lin
 /// Readers of one file each, for tests and fuzzers. `source` is named in errors. `code` is set in the result.
 Glyph parse_hanzi_json(std::string_view text, char32_t code, const std::string& source);
 Glyph parse_kanji_svg(std::string_view text, char32_t code, const std::string& source);
+/// Returns the character as `parse_hanzi_json` reads it back, coordinates to 0.005 units; classes of strokes are not
+/// stored. Precondition: it has strokes, and each has an outline.
+std::string hanzi_json_of(const Glyph& glyph);
 /// Characters of a line font.
 struct LineFontGlyphs {
     std::vector<Glyph> glyphs;

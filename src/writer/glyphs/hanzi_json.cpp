@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -64,6 +66,25 @@ Glyph parse_hanzi_json(std::string_view text, char32_t code, const std::string& 
     }
     check_glyph(glyph, source);
     return glyph;
+}
+
+std::string hanzi_json_of(const Glyph& glyph) {
+    std::string strokes, medians;
+    for (const GlyphStroke& stroke : glyph.strokes) {
+        std::string path, line;
+        for (const Ring& ring : stroke.outline) {
+            for (std::size_t i = 0; i < ring.size(); ++i)
+                path += fmt::format("{} {:.2f} {:.2f} ", i == 0 ? 'M' : 'L', ring[i].x, ring[i].y - kBelow);
+            path += "Z ";
+        }
+        if (!path.empty()) path.pop_back();
+        for (const Vec2& p : stroke.median)
+            line += fmt::format("{}[{:.2f},{:.2f}]", line.empty() ? "" : ",", p.x, p.y - kBelow);
+        strokes += fmt::format("{}\"{}\"", strokes.empty() ? "" : ",", path);
+        medians += fmt::format("{}[{}]", medians.empty() ? "" : ",", line);
+    }
+    return fmt::format("{{\"character\":{},\"strokes\":[{}],\"medians\":[{}]}}\n", Json(utf8_of(glyph.code)).dump(),
+                       strokes, medians);
 }
 
 }  // namespace tuft::writer

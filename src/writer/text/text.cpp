@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "stroke/drawing/drawing.h"
+#include "writer/copy/copied_glyph.h"
 #include "writer/fit/writer.h"
 
 namespace tuft::writer {
@@ -98,10 +99,30 @@ bool Text::blank() const {
     });
 }
 
+Glyph TextReader::copy(const TextRequest& request) {
+    const std::u32string name = characters_of(request.text);
+    if (name.size() > 1) throw Error(Message("a picture is copied as one character, and the text is its name"));
+    std::error_code ec;
+    const auto changed = std::filesystem::last_write_time(request.like, ec);
+    if (request.like != picture_path_ || changed != picture_time_) {
+        picture_path_.clear();
+        picture_ = io::read_image8(request.like);
+        picture_path_ = request.like, picture_time_ = changed;
+    }
+    copied_ = take_apart(picture_, request.like.string(), request.correction);
+    return copied_glyph(copied_->ink.cells, copied_->skeleton, copied_->order, name.empty() ? U'\u25A1' : name[0]);
+}
+
 Text TextReader::read(const TextRequest& request) {
     Text text{.style = load_style(request.style), .lines = {}, .layout = {}, .group = group_of(request.text)};
     text.layout.spacing = text.style.spacing;
     text.layout.line_spacing = text.style.line_spacing;
+    copied_.reset();
+    if (!request.like.empty()) {
+        text.lines = {{copy(request)}};
+        if (request.text.empty()) text.group = group_of(request.like.stem().string());
+        return text;
+    }
     if (request.glyphs != path_) {
         own_.reset();
         path_.clear();

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "core/system/disk_cache.h"
 #include "core/system/progress.h"
 #include "stroke/journal/entries.h"
+#include "writer/copy/correction.h"
 #include "writer/gesture/style.h"
 #include "writer/glyphs/glyph_source.h"
 #include "writer/layout/text_layout.h"
@@ -23,6 +25,8 @@ struct TextRequest {
     std::string text;              ///< UTF-8; `lines_of` divides it
     std::filesystem::path glyphs;  ///< source of characters before the bundled ones, or empty
     std::string style = "kaishu";  ///< name or .toml
+    std::filesystem::path like;    ///< picture of one character that is copied, whose name is `text`; or empty
+    CopyCorrection correction;     ///< of the copy
 
     bool operator==(const TextRequest&) const = default;
 };
@@ -40,11 +44,21 @@ struct Text {
 /// Reads texts. Sources of characters stay open from one text to the next. Not shared by threads.
 class TextReader {
   public:
-    /// Throws `Error` that names all missing characters, and for an unknown style or source.
+    /// Throws `Error` that names all missing characters, for an unknown style or source, and for a picture that cannot
+    /// be copied, or whose name is more than one character.
     Text read(const TextRequest& request);
+    /// The picture of the last request taken apart; nothing where it had none.
+    const std::optional<CopiedPicture>& copied() const { return copied_; }
+    /// The picture itself. Precondition: `copied`.
+    const io::Image8& picture() const { return picture_; }
 
   private:
-    std::filesystem::path path_;
+    Glyph copy(const TextRequest& request);
+
+    std::filesystem::path path_, picture_path_;
+    std::filesystem::file_time_type picture_time_;
+    io::Image8 picture_;
+    std::optional<CopiedPicture> copied_;
     std::unique_ptr<GlyphSource> own_, bundled_;
 };
 

@@ -1,0 +1,115 @@
+#include <gmock/gmock.h>
+
+#include "copied_picture.h"
+#include "stroke/journal/journal.h"
+#include "studio_program.h"
+
+/// A character copied from a picture and corrected by hand, in the real program.
+namespace tuft::app {
+namespace {
+
+class StudioCopying : public StudioProgram {
+  protected:
+    void SetUp() override {
+        StudioProgram::SetUp();
+        write_cross(path("cross.png"));
+    }
+    static constexpr const char* kWindow = "--headless --size 1280x720";
+    /// The picture in the tool that writes, its strokes shown.
+    std::string copied() const {
+        return kBowl + "set tool text\nset text-like " + path("cross.png") +
+               "\nset text \xe5\x8d\x81\nset text-size 20\nwait-ready\nwait 0.2\nexpect label \"Stroke 2\"\n";
+    }
+    /// A click on the bowl's wall between the panels, after which the journal has `n` strokes.
+    static std::string click_for(int n) {
+        return "wait-ready\nmove 45%,62%\nwait 0.1\npress\nrelease\nwait-ready\nexpect strokes " + std::to_string(n) +
+               "\n";
+    }
+    /// Whether a stroke runs to the right.
+    static bool goes_right(const stroke::JournalEntry& entry) {
+        const auto& samples = std::get<stroke::PaintStroke>(entry.content).trace.samples;
+        return samples.back().position.x > samples.front().position.x;
+    }
+};
+
+TEST_F(StudioCopying, ACorrectedOrderIsPaintedInOneGroupAndKeptWithTheProject) {
+    const Ran first = studio(copied() + click_for(2) + "click \"Stroke 1\"\nwait 0.2\n" + click_for(4) +
+                                 "expect message --order\nsave work.tuft\nwait-ready\n",
+                             kWindow);
+    ASSERT_EQ(first.status, 0) << first.err;
+    const auto strokes = io::Project::open(path("work.tuft")).strokes();
+    ASSERT_EQ(strokes.size(), 4u);
+    EXPECT_TRUE(goes_right(strokes[0]));
+    EXPECT_FALSE(goes_right(strokes[2])) << "the horizontal stroke was reversed";
+    EXPECT_EQ(strokes[2].group, strokes[3].group);
+    EXPECT_NE(strokes[0].group.id, strokes[2].group.id);
+    EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], test::stored_hash(path("work.tuft")));
+    fs::remove(path("cross.png"));  // the project has it
+    const Ran second =
+        studio("open " + path("work.tuft") + "\nwait-ready\nset tool text\nclick \"\xe2\x96\xbe##kept\"\n" +
+                   "click \"kept \xe5\x8d\x81  cross.png\"\nwait-ready\nset text-size 20\n" +
+                   "expect label \"Stroke 2\"\n" + click_for(6) + "save work.tuft\nwait-ready\n",
+               kWindow);
+    ASSERT_EQ(second.status, 0) << second.err;
+    EXPECT_FALSE(goes_right(io::Project::open(path("work.tuft")).strokes()[4]));
+}
+
+TEST_F(StudioCopying, StrokesAreDraggedSplitJoinedRemovedAndTakenBackByHand) {
+    const Ran found = studio(copied() + "places\n", kWindow);
+    ASSERT_EQ(found.status, 0) << found.err;
+    const auto at = [&](const std::string& label) {
+        const auto [x, y] = places(found.out).at(label);
+        return std::to_string(x) + "," + std::to_string(y);
+    };
+    const auto steps = [](const std::string& edit, const std::string& then) {
+        return "click " + edit + "\n" + then + "wait-ready\nwait 0.2\nplaces\n";
+    };
+    const std::string drag = "move " + at("Order 1") + "\npress\nwait 0.1\nmove " + at("Order 2") +
+                             "\nwait 0.1\nrelease\nwait-ready\nwait 0.2\n";
+    const auto labels = [&](const std::string& script) {
+        const Ran ran = studio(copied() + script, kWindow);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        return places(ran.out);
+    };
+    // 十: the middles of its strokes differ little, so where the first one is tells the order by what is painted.
+    const Ran dragged = studio(copied() + drag + click_for(2) + "save work.tuft\nwait-ready\n", kWindow);
+    ASSERT_EQ(dragged.status, 0) << dragged.err;
+    const auto strokes = io::Project::open(path("work.tuft")).strokes();
+    ASSERT_EQ(strokes.size(), 2u);
+    EXPECT_TRUE(goes_right(strokes[1])) << "the horizontal stroke comes last";
+
+    EXPECT_TRUE(labels(steps("Split", "move " + at("Copied picture") + "\nwait 0.1\nclick \"Stroke 1\"\n"))
+                    .contains("Stroke 3"));
+    EXPECT_FALSE(labels(steps("Remove", "click \"Stroke 1\"\n")).contains("Stroke 2"));
+    EXPECT_FALSE(labels(steps("Join", "click \"Stroke 1\"\nclick \"Stroke 2\"\n")).contains("Stroke 2"));
+    EXPECT_TRUE(labels(steps("Remove", "click \"Stroke 1\"\nwait-ready\nclick \"Step back\"\n")).contains("Stroke 2"));
+}
+
+// What is saved is a source of characters.
+TEST_F(StudioCopying, IsSavedAsAFileThatTheToolAndTheCommandRead) {
+    const std::string file = path("\xe5\x8d\x81.json");
+    const Ran ran = studio(copied() + "click Save...\nwait 0.3\nkey ctrl+a\ntype \"" + file +
+                               "\"\nkey enter\nwait 0.3\nexpect message Saved\n",
+                           kWindow);
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    ASSERT_TRUE(fs::exists(file));
+    const nlohmann::json written = tuft("write '" + source_folder() +
+                                        "/models/sheet.ply' --place 0,0,0 --atlas-size 256 --text "
+                                        "\xe5\x8d\x81 --fit --size 30 --glyphs '" +
+                                        folder_.string() + "' --project '" + path("a.tuft") + "'");
+    EXPECT_EQ(written.at("strokes").size(), 2u);
+}
+
+TEST_F(StudioCopying, APictureWithoutInkIsAFaultAndATextCanBeWrittenAgain) {
+    std::vector<std::uint8_t> white(64 * 64, 255);
+    io::write_image(path("white.png"), io::view_of(64, 64, 1, white.data()));
+    const Ran ran = studio(kBowl + "set tool text\nset text-like " + path("white.png") +
+                               "\nwait-ready\nexpect label \"Text fault\"\nclick \"\xc3\x97##like\"\nset text "
+                               "\xe6\xb0\xb8\nset text-size 20\n" +
+                               click_for(5),
+                           kWindow);
+    EXPECT_EQ(ran.status, 0) << ran.err;
+}
+
+}  // namespace
+}  // namespace tuft::app
