@@ -11,7 +11,7 @@ namespace tuft::contact {
 /// Result of `expand_ball`, metres. r_expanded <= r* <= radius <= (1 + ε) r*, with r* the radius of the smallest
 /// enclosing sphere.
 struct Sphere {
-    Vec3 centre{0};
+    Vec3 centre{0};         ///< of the ball with `radius`
     double radius = 0;      ///< holds every point
     double r_start = 0;     ///< of the first ball, with diameter BC
     double r_expanded = 0;  ///< of the last ball, a lower bound of r*

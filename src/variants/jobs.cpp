@@ -77,10 +77,10 @@ Jobs::Jobs(const fs::path& folder) : folder_(folder) {
         plan_folder_ = j.at("folder").get<std::string>();
         j.at("hashes").get_to(hashes_);
     } catch (const nlohmann::json::exception&) {
-        throw Error(file.string(), "is damaged; lay the plan out again");
+        throw Error(file.string(), "is damaged; write the tasks again");
     }
     if (hashes_.empty() || hashes_.size() > kMostTasks || !std::all_of(hashes_.begin(), hashes_.end(), is_hash))
-        throw Error(file.string(), "is damaged; lay the plan out again");
+        throw Error(file.string(), "is damaged; write the tasks again");
 }
 
 fs::path Jobs::task_file(std::size_t i) const {
@@ -99,7 +99,7 @@ fs::path Jobs::picture(std::size_t i) const {
 Task Jobs::task(std::size_t i) const {
     const fs::path file = task_file(i);
     const Task task = task_of_json(text_of_file(file), file.string());
-    if (hash_of(task) != hashes_[i]) throw Error(file.string(), "was changed; lay the plan out again");
+    if (hash_of(task) != hashes_[i]) throw Error(file.string(), "was changed; write the tasks again");
     return task;
 }
 
@@ -223,10 +223,10 @@ Ran run_task(const Jobs& jobs, std::size_t i, const PaintTask& paint, ContentHas
     try {
         const Task task = jobs.task(i);
         if (task.program != program_version())
-            throw Error("the task is for another version of tuft; lay the plan out again");
+            throw Error("the task is for another version of tuft; write the tasks again");
         for (const auto& [name, hash] : contents_of(task, jobs.plan_folder(), known))
             if (const auto at = task.contents.find(name); at == task.contents.end() || at->second != hash)
-                throw Error(fmt::format("'{}' is another one than when the plan was laid out; lay it out again", name));
+                throw Error(fmt::format("'{}' has changed since the tasks were written; write them again", name));
         jobs.store(i, paint(task));
         return Ran::painted;
     } catch (const UsageError& error) {

@@ -101,7 +101,7 @@ TEST_F(JobsFolder, AFileThatChangedIsNotPaintedUnderItsOldHash) {
     std::ofstream(folder_ / "one.inkml") << "two";
     ContentHashes known;
     EXPECT_EQ(run_task(j, 0, outcome, known), Ran::failed);
-    EXPECT_THAT(j.failure(0), HasSubstr("'one.inkml' is another one than when the plan was laid out"));
+    EXPECT_THAT(j.failure(0), HasSubstr("'one.inkml' has changed since the tasks were written"));
 }
 
 TEST_F(JobsFolder, AnEnlargedPlanRetainsItsResults) {

@@ -20,9 +20,9 @@ struct Writing {
     std::vector<Message> notes;                  ///< skipped content of the file, one line each
     Vec2 centre{0};                              ///< metres, of the ink of all traces
     double width = 0, height = 0;                ///< metres, of the ink of all traces, as in the file
-    double scale = 1;
-    double turn = 0;        ///< radians, clockwise in the view
-    bool mirrored = false;  ///< from left to right
+    double scale = 1;                            ///< times the size in the file
+    double turn = 0;                             ///< radians, clockwise in the view
+    bool mirrored = false;                       ///< from left to right
     stroke::SurfaceMapping mapping = stroke::SurfaceMapping::drape;
     bool own_ink = false;   ///< uses brush and ink that the file names
     bool own_width = true;  ///< uses the line widths of the drawing, where it has any
@@ -77,7 +77,7 @@ struct WritingHand {
 /// `stroke::choose_brushes` and `stroke::press_to_widths`.
 struct PlacedWriting {
     std::vector<stroke::JournalEntry> entries;
-    double scale = 1;
+    double scale = 1;   ///< times the size in the file
     double extent = 0;  ///< metres, the larger side on the model
     stroke::BrushFit fit;
 };

@@ -14,8 +14,8 @@ namespace tuft::app {
 
 /// One axis of a device: its valuator number and range.
 struct PenAxis {
-    int number = -1;  ///< negative: missing
-    double lo = 0, hi = 1, value = 0;
+    int number = -1;                   ///< negative: missing
+    double lo = 0, hi = 1, value = 0;  ///< range and state, units of the device
 
     /// Returns the position in the range, 0–1.
     double part() const;

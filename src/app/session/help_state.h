@@ -16,8 +16,8 @@ struct HelpState {
     bool seen = false;      ///< it was shown or skipped before; then it does not start automatically
     bool by_itself = true;  ///< it may start automatically; false while a script plays
     // State at the beginning of the step.
-    bool fresh = true;  ///< the step has just begun
-    double azimuth = 0, elevation = 0, distance = 0;
+    bool fresh = true;                                ///< the step has just begun
+    double azimuth = 0, elevation = 0, distance = 0;  ///< of the view: radians, metres
     std::size_t strokes = 0;
     std::string brush;
 };

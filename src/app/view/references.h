@@ -20,7 +20,7 @@ struct ReferenceImage {
     std::vector<char> bytes;  ///< of the file
     Vec2 at{0.03};            ///< upper left corner, fractions of the view's width and height
     double width = 0.3;       ///< fraction of the view's width
-    double opacity = 1;
+    double opacity = 1;       ///< 0–1
     bool shown = true;
     int pixels_across = 0, pixels_down = 0;  ///< size of the picture; 0: not decoded yet
     unsigned texture = 0;                    ///< OpenGL name; 0: none yet

@@ -150,11 +150,9 @@ void Texture::continue_over_seams(std::vector<std::uint8_t>& values, std::uint32
         float sum = 0;
         for (std::uint32_t k = plan.gutter.start[entry]; k < plan.gutter.start[entry + 1]; ++k) {
             const atlas::GutterTap& tap = plan.gutter.taps[k];
-            const std::size_t tile = map.tile_of_slot[tap.texel / atlas::kTileTexels],
-                              t = tap.texel % atlas::kTileTexels;
-            const std::size_t x = tile % map.tiles_per_side * atlas::kTile + t % atlas::kTile;
-            const std::size_t y = tile / map.tiles_per_side * atlas::kTile + t / atlas::kTile;
-            sum += tap.weight * static_cast<float>(values[y * size + x]);
+            const atlas::TexelPlace at =
+                atlas::texel_place(map, tap.texel / atlas::kTileTexels, tap.texel % atlas::kTileTexels);
+            sum += tap.weight * static_cast<float>(values[static_cast<std::size_t>(at.y) * size + at.x]);
         }
         values[plan.gutter.texels[entry]] = static_cast<std::uint8_t>(std::clamp(sum, 0.0f, 255.0f));
     }

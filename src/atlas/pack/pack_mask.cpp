@@ -42,13 +42,7 @@ struct Bits {
 void take(Bits& cells, std::uint32_t row, double a, double b) {
     const auto first = static_cast<std::size_t>(std::max(a, 0.0));
     const auto last = std::min<std::size_t>(static_cast<std::size_t>(std::max(b, 0.0)), cells.width - 1);
-    const std::span line = cells.row(row);
-    for (std::size_t w = first / 64; w <= last / 64; ++w) {
-        std::uint64_t m = ~std::uint64_t{0};
-        if (w == first / 64) m &= ~std::uint64_t{0} << (first % 64);
-        if (w == last / 64) m &= ~std::uint64_t{0} >> (63 - last % 64);
-        line[w] |= m;
-    }
+    set_cells(cells.row(row).data(), first, last);
 }
 
 /// All cells that a polygon touches, from the corner of its box on; `p` in cells.

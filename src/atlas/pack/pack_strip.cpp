@@ -74,13 +74,7 @@ void Strip::take(std::uint32_t y, std::int64_t first, std::int64_t last) {
     const auto b = static_cast<std::size_t>(std::min<std::int64_t>(last, width_ - 1));
     built_[y] = 1;
     gap_[y] = kNone;
-    std::uint64_t* row = level(y, 0);
-    for (std::size_t w = a / 64; w <= b / 64; ++w) {
-        std::uint64_t m = ~std::uint64_t{0};
-        if (w == a / 64) m &= ~std::uint64_t{0} << (a % 64);
-        if (w == b / 64) m &= ~std::uint64_t{0} >> (63 - b % 64);
-        row[w] |= m;
-    }
+    set_cells(level(y, 0), a, b);
 }
 
 void Strip::build_level(std::uint32_t y, int k) {

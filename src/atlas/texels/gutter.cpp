@@ -391,10 +391,8 @@ Gutter build_gutter(const mesh::TriangleMesh& mesh, const Atlas& atlas, const Te
 void fill_gutter(const Gutter& gutter, const TexelMap& map, int channels, std::span<float> image) {
     assert(image.size() == std::size_t{gutter.size} * gutter.size * channels);
     const auto pixel = [&](std::uint32_t texel) {
-        const std::uint32_t tile = map.tile_of_slot[texel / kTileTexels], t = texel % kTileTexels;
-        const std::size_t x = std::size_t{tile % map.tiles_per_side} * kTile + t % kTile;
-        const std::size_t y = std::size_t{tile / map.tiles_per_side} * kTile + t / kTile;
-        return (y * map.size + x) * channels;
+        const TexelPlace at = texel_place(map, texel / kTileTexels, texel % kTileTexels);
+        return static_cast<std::size_t>((at.y * map.size + at.x) * channels);
     };
     parallel_for(gutter.texels.size(), 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {

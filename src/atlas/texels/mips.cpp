@@ -62,14 +62,11 @@ void shrink(const TexelMap& below, std::span<const float> from, const TexelMap& 
             const auto slot = static_cast<std::uint32_t>(i / kTileTexels);
             const int texel = static_cast<int>(i % kTileTexels);
             if (map.tiles[slot].cluster[texel] == kNoCluster) continue;
-            const std::uint32_t tile = map.tile_of_slot[slot];
-            const std::size_t x = std::size_t{tile % map.tiles_per_side} * kTile + texel % kTile;
-            const std::size_t y = std::size_t{tile / map.tiles_per_side} * kTile + texel / kTile;
+            const auto [x, y] = texel_place(map, slot, static_cast<std::uint32_t>(texel));
             const std::uint32_t chart = map.cluster_chart[map.cluster_start[slot] + map.tiles[slot].cluster[texel]];
             std::array<bool, 4> own{};
             for (int k = 0; k < 4; ++k) {
-                const std::uint32_t c =
-                    chart_of(below, texel_ref(below, std::int64_t(2 * x) + k % 2, std::int64_t(2 * y) + k / 2));
+                const std::uint32_t c = chart_of(below, texel_ref(below, 2 * x + k % 2, 2 * y + k / 2));
                 own[k] = c == chart || c == kNone;
             }
             if (own == std::array<bool, 4>{}) own.fill(true);

@@ -10,11 +10,9 @@
 namespace tuft::atlas {
 namespace {
 
-/// Column and row in the atlas.
 std::array<std::int64_t, 2> place(const TexelMap& map, const TexelRef& ref) {
-    const std::uint32_t tile = map.tile_of_slot[ref.slot];
-    return {std::int64_t{tile % map.tiles_per_side} * kTile + ref.texel % kTile,
-            std::int64_t{tile / map.tiles_per_side} * kTile + ref.texel / kTile};
+    const TexelPlace at = texel_place(map, ref.slot, ref.texel);
+    return {at.x, at.y};
 }
 
 /// The face as its lower texel, or the left one of a row, holds it.

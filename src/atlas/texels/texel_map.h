@@ -94,6 +94,18 @@ struct TexelRef {
     bool operator==(const TexelRef&) const = default;
 };
 
+/// Column and row of a texel in the atlas.
+struct TexelPlace {
+    std::int64_t x = 0, y = 0;
+};
+
+/// Returns the place of texel `texel` (row · 16 + column of the tile) of a slot. `texel_ref` is its inverse.
+inline TexelPlace texel_place(const TexelMap& map, std::uint32_t slot, std::uint32_t texel) {
+    const std::uint32_t tile = map.tile_of_slot[slot];
+    return {std::int64_t{tile % map.tiles_per_side} * kTile + texel % kTile,
+            std::int64_t{tile / map.tiles_per_side} * kTile + texel / kTile};
+}
+
 /// The texel in column x and row y of the atlas; not valid where no chart covers it.
 inline TexelRef texel_ref(const TexelMap& map, std::int64_t x, std::int64_t y) {
     if (x < 0 || y < 0 || x >= map.size || y >= map.size) return {};

@@ -23,16 +23,18 @@ template <class T>
 struct Recycler {
     static_assert(alignof(T) <= alignof(std::max_align_t));
     using value_type = T;
+    /// Of an element, which may be a pointer.
+    static constexpr std::size_t kBytes = sizeof(T);  // NOLINT(bugprone-sizeof-expression): not of what it points to
 
     Recycler() = default;
     template <class U>
     Recycler(const Recycler<U>&) {}
 
     T* allocate(std::size_t n) {
-        if (n > static_cast<std::size_t>(-1) / 2 / sizeof(T)) throw std::bad_array_new_length();
-        return static_cast<T*>(take_block(n * sizeof(T)));
+        if (n > static_cast<std::size_t>(-1) / 2 / kBytes) throw std::bad_array_new_length();
+        return static_cast<T*>(take_block(n * kBytes));
     }
-    void deallocate(T* block, std::size_t n) noexcept { return_block(block, n * sizeof(T)); }
+    void deallocate(T* block, std::size_t n) noexcept { return_block(block, n * kBytes); }
     template <class U>
     bool operator==(const Recycler<U>&) const {
         return true;

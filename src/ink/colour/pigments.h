@@ -30,7 +30,7 @@ constexpr double film_of_millilitres(double ml) {
 struct PigmentCurve {
     std::vector<float> nm;    ///< wavelengths, ascending; empty: k and s are red, green, blue
     std::vector<float> k, s;  ///< one number per wavelength, times `scale` per film unit
-    float scale = 1;
+    float scale = 1;          ///< factor on `k` and `s`
 };
 
 /// Returns K and S per film unit at a wavelength, of a curve that is not empty: linear between its samples,

@@ -127,10 +127,8 @@ void continue_over_seams(AtlasMap<T>& image, std::span<const std::uint32_t> slot
     std::sort(wanted.begin(), wanted.end());
     wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
     const auto place = [&](std::uint32_t texel) {
-        const std::uint32_t tile = map.tile_of_slot[texel / kN], t = texel % kN;
-        const std::size_t x = std::size_t{tile % map.tiles_per_side} * kSide + t % kSide;
-        const std::size_t y = std::size_t{tile / map.tiles_per_side} * kSide + t / kSide;
-        return (y * image.size + x) * C;
+        const atlas::TexelPlace at = atlas::texel_place(map, texel / kN, texel % kN);
+        return static_cast<std::size_t>((at.y * image.size + at.x) * C);
     };
     parallel_for(wanted.size(), 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {

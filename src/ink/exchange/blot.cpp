@@ -67,9 +67,8 @@ class Blotting {
         return false;
     }
     std::array<std::int64_t, 2> column_and_row(const atlas::TexelRef& ref) const {
-        const std::uint32_t tile = map_.tile_of_slot[ref.slot];
-        return {std::int64_t{tile % map_.tiles_per_side} * kSide + ref.texel % kSide,
-                std::int64_t{tile / map_.tiles_per_side} * kSide + ref.texel / kSide};
+        const atlas::TexelPlace at = atlas::texel_place(map_, ref.slot, ref.texel);
+        return {at.x, at.y};
     }
     bool wet(const atlas::TexelRef& ref) const {
         const auto has = [&](Liquid where) {

@@ -124,9 +124,8 @@ atlas::TexelRef Drips::beside(const atlas::TexelRef& ref, int column, int row) c
         return map_.tiles[ref.slot].cluster[texel] == atlas::kNoCluster ? atlas::TexelRef{}
                                                                         : atlas::TexelRef{ref.slot, texel};
     }
-    const std::uint32_t tile = map_.tile_of_slot[ref.slot];
-    return atlas::texel_ref(map_, std::int64_t{tile % map_.tiles_per_side} * n + column,
-                            std::int64_t{tile / map_.tiles_per_side} * n + row);
+    const atlas::TexelPlace first = atlas::texel_place(map_, ref.slot, 0);
+    return atlas::texel_ref(map_, first.x + column, first.y + row);
 }
 
 struct Drips::Bead {

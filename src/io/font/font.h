@@ -31,7 +31,7 @@ struct Shaping {
 /// Lines of a font, em above the baseline.
 struct FontMetrics {
     double ascent = 0.8, descent = -0.2;
-    double x_height = 0.5;
+    double x_height = 0.5;                     ///< of small letters
     double underline = -0.1, strikeout = 0.3;  ///< middle of the line
     double line_thickness = 0.05;
 };

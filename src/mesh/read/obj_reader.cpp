@@ -52,20 +52,29 @@ class ObjReader {
     void finish_colours();
     std::uint32_t point_index(std::int64_t written);
 
+    /// What `o`, `g` and `usemtl` named last, and the groups so far.
+    struct Groups {
+        std::string object, group, material;
+        std::uint32_t current = kNone;
+        bool changed = false;
+        std::vector<ScenePart> parts;                     ///< by group
+        std::vector<std::string> named;                   ///< objects and groups, in the order of the file
+        std::unordered_set<std::string> seen, has_faces;  ///< the same, and those with faces
+    };
+    /// The face being read.
+    struct Face {
+        std::vector<std::uint32_t> corners;
+        std::vector<Vec2f> uvs;
+        bool uv_missing = false;
+    };
+
     std::string file_;
     TextCursor text_;
     SoupBuilder builder_;
     std::vector<Vec2f> uvs_;
     std::vector<Vec3f> colours_;
-    std::string object_, group_, material_;
-    std::uint32_t current_group_ = kNone;
-    bool group_changed_ = false;
-    std::vector<ScenePart> parts_;                      ///< by group
-    std::vector<std::string> named_;                    ///< objects and groups, in the order of the file,
-    std::unordered_set<std::string> seen_, has_faces_;  ///< the same, and those with faces
-    std::vector<std::uint32_t> corners_;                ///< of the face being read
-    std::vector<Vec2f> corner_uvs_;
-    bool uv_missing_ = false;
+    Groups groups_;
+    Face face_;
     std::size_t highest_ = 0;  ///< highest vertex number used by a face before it was read,
     long highest_line_ = 0;    ///< and where
     Tally free_form_, bad_uv_index_;
@@ -82,11 +91,11 @@ void ObjReader::read_line() {
         const double v = text_.more() ? text_.number("a texture coordinate") : 0.0;
         uvs_.emplace_back(u, v);
     } else if (same_word(key, "o")) {
-        set_group(object_);
+        set_group(groups_.object);
     } else if (same_word(key, "g")) {
-        set_group(group_);
+        set_group(groups_.group);
     } else if (same_word(key, "usemtl")) {
-        set_group(material_);
+        set_group(groups_.material);
     } else if (same_word(key, "mtllib")) {
         builder_.soup.material_libraries.emplace_back(text_.rest());
     } else if (same_word(key, "curv") || same_word(key, "curv2") || same_word(key, "surf")) {
@@ -97,30 +106,32 @@ void ObjReader::read_line() {
 void ObjReader::set_group(std::string& part) {
     part = std::string(text_.rest());
     if (const std::size_t comment = part.find(" #"); comment != part.npos) part.resize(comment);
-    group_changed_ = true;
-    if (&part != &material_ && !part.empty() && seen_.insert(part).second) named_.push_back(part);
+    groups_.changed = true;
+    if (&part != &groups_.material && !part.empty() && groups_.seen.insert(part).second) groups_.named.push_back(part);
 }
 
 /// Groups are made by their first face: `o`, `g` and `usemtl` one after the other name one, not
 /// three.
 std::uint32_t ObjReader::current_group() {
-    if (!group_changed_) return current_group_;
-    group_changed_ = false;
+    if (!groups_.changed) return groups_.current;
+    groups_.changed = false;
     std::string name;
-    for (const std::string* s : {&object_, &group_, &material_})
+    for (const std::string* s : {&groups_.object, &groups_.group, &groups_.material})
         if (!s->empty() && *s != name) name += (name.empty() ? "" : " / ") + *s;
-    for (const std::string* s : {&object_, &group_}) has_faces_.insert(*s);
-    current_group_ = name.empty() ? kNone : builder_.group(name, material_);
-    if (current_group_ != kNone && current_group_ == parts_.size())
-        parts_.push_back({.object = to_utf8(object_), .group = to_utf8(group_), .material = to_utf8(material_)});
-    return current_group_;
+    for (const std::string* s : {&groups_.object, &groups_.group}) groups_.has_faces.insert(*s);
+    groups_.current = name.empty() ? kNone : builder_.group(name, groups_.material);
+    if (groups_.current != kNone && groups_.current == groups_.parts.size())
+        groups_.parts.push_back({.object = to_utf8(groups_.object),
+                                 .group = to_utf8(groups_.group),
+                                 .material = to_utf8(groups_.material)});
+    return groups_.current;
 }
 
 void ObjReader::name_parts(PolygonSoup& soup) const {
     report_empty(soup);
     if (soup.group_names.empty()) return;
     soup.scene = std::make_shared<SourceScene>();
-    soup.scene->parts = parts_;
+    soup.scene->parts = groups_.parts;
     soup.scene->parts.resize(soup.group_names.size());
 }
 
@@ -128,9 +139,9 @@ void ObjReader::report_empty(PolygonSoup& soup) const {
     constexpr std::size_t kMostNames = 5;
     std::string names;
     std::size_t n = 0;
-    for (const std::string& name : named_) {
+    for (const std::string& name : groups_.named) {
         // Maya writes "g default" before the vertices of each object.
-        if (has_faces_.contains(name) || name == "default") continue;
+        if (groups_.has_faces.contains(name) || name == "default") continue;
         if (++n <= kMostNames) names += (n > 1 ? ", " : "") + in_quotes(name);
     }
     if (n > kMostNames) names += ", ...";
@@ -177,23 +188,23 @@ void ObjReader::read_corner() {
     }
     if (p != end && *p != '/' && *p != '#')
         text_.fail(Message("{} is not a face corner such as 1, 1/2 or 1/2/3", in_quotes(token)));
-    corners_.push_back(point_index(position));
+    face_.corners.push_back(point_index(position));
     const auto n = static_cast<std::int64_t>(uvs_.size());
     const std::int64_t i = uv < 0 ? n + uv : uv - 1;
     const bool exists = uv != 0 && i >= 0 && i < n;
     if (uv != 0 && !exists) bad_uv_index_.add(text_.line());
-    uv_missing_ = uv_missing_ || !exists;
-    corner_uvs_.push_back(exists ? uvs_[static_cast<std::size_t>(i)] : Vec2f(0));
+    face_.uv_missing = face_.uv_missing || !exists;
+    face_.uvs.push_back(exists ? uvs_[static_cast<std::size_t>(i)] : Vec2f(0));
 }
 
 void ObjReader::read_face() {
     const long line = text_.line();
-    corners_.clear();
-    corner_uvs_.clear();
-    uv_missing_ = false;
+    face_.corners.clear();
+    face_.uvs.clear();
+    face_.uv_missing = false;
     while (text_.more()) read_corner();
-    if (uv_missing_) corner_uvs_.clear();
-    builder_.add_polygon(corners_, corner_uvs_, current_group(), line);
+    if (face_.uv_missing) face_.uvs.clear();
+    builder_.add_polygon(face_.corners, face_.uvs, current_group(), line);
 }
 
 void ObjReader::finish_colours() {

@@ -102,19 +102,29 @@ void fill_buffer(GLenum kind, GLuint buffer, const std::vector<T>& values, GLenu
 }  // namespace
 
 struct GlScene::State {
-    GLuint mesh_program = 0, solid_program = 0, backdrop_program = 0, atlas_program = 0;
-    GLuint mesh_array = 0, mesh_buffer = 0, mesh_index = 0;
-    GLuint cluster_array = 0, cluster_index = 0;
-    std::vector<Vec3f> positions;        // of the vertices in mesh_buffer
+    struct Programs {
+        GLuint mesh = 0, solid = 0, backdrop = 0, atlas = 0;
+    };
+    /// Vertices and indices of triangles.
+    struct Arrays {
+        GLuint array = 0, buffer = 0, index = 0;
+    };
+    /// Triangles near each other, drawn together. They share the vertices of the mesh.
+    struct Clusters {
+        GLuint array = 0, index = 0;
+        std::vector<std::uint32_t> order;  // of the triangles
+        std::vector<Cluster> all;          // opaque ones, then those of glass
+        std::size_t n_opaque = 0;
+        std::vector<GLuint> queries;       // one per cluster: whether any of it is seen
+        std::vector<std::uint8_t> hidden;  // likewise, after the answers
+        bool pending = false;              // the answers are still to be read
+    };
+    Programs programs;
+    Arrays mesh, solid;
+    std::vector<Vec3f> positions;        // of the vertices in `mesh`
     std::vector<std::uint32_t> indices;  // of all triangles, in the file's order
-    std::vector<std::uint32_t> order;    // of the triangles in clusters
-    std::vector<Cluster> clusters;       // opaque ones, then those of glass
-    std::size_t n_opaque = 0;            // clusters
-    std::vector<GLuint> queries;         // one per cluster: whether any of it is seen
-    std::vector<std::uint8_t> hidden;    // likewise, after the answers
-    bool asked = false;                  // the answers are still to be read
-    GLuint solid_array = 0, solid_buffer = 0, solid_index = 0, empty_array = 0;
-    GLuint texture = 0, colour_buffer = 0, colour_texture = 0;
+    Clusters clusters;
+    GLuint empty_array = 0, texture = 0, colour_buffer = 0, colour_texture = 0;
     GLsizei n_indices = 0;
     int texture_size = 0;
 
@@ -135,13 +145,14 @@ struct GlScene::State {
 
 GlScene::GlScene() : state_(std::make_unique<State>()) {
     State& s = *state_;
-    s.mesh_program = make_program("mesh/mesh");
-    s.solid_program = make_program("brush/brush");
-    s.backdrop_program = make_program("backdrop/backdrop");
-    s.atlas_program = make_program("atlas/atlas");
-    for (GLuint* array : {&s.mesh_array, &s.cluster_array, &s.solid_array, &s.empty_array}) glGenVertexArrays(1, array);
+    s.programs.mesh = make_program("mesh/mesh");
+    s.programs.solid = make_program("brush/brush");
+    s.programs.backdrop = make_program("backdrop/backdrop");
+    s.programs.atlas = make_program("atlas/atlas");
+    for (GLuint* array : {&s.mesh.array, &s.clusters.array, &s.solid.array, &s.empty_array})
+        glGenVertexArrays(1, array);
     for (GLuint* buffer :
-         {&s.mesh_buffer, &s.mesh_index, &s.cluster_index, &s.solid_buffer, &s.solid_index, &s.colour_buffer})
+         {&s.mesh.buffer, &s.mesh.index, &s.clusters.index, &s.solid.buffer, &s.solid.index, &s.colour_buffer})
         glGenBuffers(1, buffer);
     glGenTextures(1, &s.texture);
     glGenTextures(1, &s.colour_texture);
@@ -149,16 +160,16 @@ GlScene::GlScene() : state_(std::make_unique<State>()) {
 
 GlScene::~GlScene() {
     State& s = *state_;
-    for (const GLuint program : {s.mesh_program, s.solid_program, s.backdrop_program, s.atlas_program})
+    for (const GLuint program : {s.programs.mesh, s.programs.solid, s.programs.backdrop, s.programs.atlas})
         glDeleteProgram(program);
-    for (const GLuint array : {s.mesh_array, s.cluster_array, s.solid_array, s.empty_array})
+    for (const GLuint array : {s.mesh.array, s.clusters.array, s.solid.array, s.empty_array})
         glDeleteVertexArrays(1, &array);
     for (const GLuint buffer :
-         {s.mesh_buffer, s.mesh_index, s.cluster_index, s.solid_buffer, s.solid_index, s.colour_buffer})
+         {s.mesh.buffer, s.mesh.index, s.clusters.index, s.solid.buffer, s.solid.index, s.colour_buffer})
         glDeleteBuffers(1, &buffer);
     glDeleteTextures(1, &s.texture);
     glDeleteTextures(1, &s.colour_texture);
-    glDeleteQueries(static_cast<GLsizei>(s.queries.size()), s.queries.data());
+    glDeleteQueries(static_cast<GLsizei>(s.clusters.queries.size()), s.clusters.queries.data());
 }
 
 void GlScene::set_mesh(const mesh::TriangleMesh& mesh, std::span<const Vec2f> corner_uvs) {
@@ -176,12 +187,12 @@ void GlScene::set_mesh(const mesh::TriangleMesh& mesh, std::span<const Vec2f> co
             if (is_new) vertices.push_back(v);
             indices.push_back(at->second);
         }
-    fill_buffer(GL_ARRAY_BUFFER, s.mesh_buffer, vertices, GL_STATIC_DRAW);
+    fill_buffer(GL_ARRAY_BUFFER, s.mesh.buffer, vertices, GL_STATIC_DRAW);
     s.positions.clear();
     s.positions.reserve(vertices.size());
     for (const Vertex& v : vertices) s.positions.push_back(v.position);
     s.indices = std::move(indices);
-    s.order = spatial_order(mesh);
+    s.clusters.order = spatial_order(mesh);
     set_parts({}, {});
 }
 
@@ -193,21 +204,21 @@ void GlScene::set_parts(std::span<const std::uint8_t> hidden, std::span<const fl
     for (std::size_t t = 0; t < hidden.size(); ++t)
         if (hidden[t]) numbered[3 * t + 1] = numbered[3 * t + 2] = numbered[3 * t];
     sorted.reserve(s.indices.size());
-    s.clusters.clear();
-    glDeleteQueries(static_cast<GLsizei>(s.queries.size()), s.queries.data());
-    s.queries.clear();
+    s.clusters.all.clear();
+    glDeleteQueries(static_cast<GLsizei>(s.clusters.queries.size()), s.clusters.queries.data());
+    s.clusters.queries.clear();
     const std::size_t n_triangles = s.indices.size() / 3;
     const std::size_t most = std::max(kClusterTriangles, n_triangles / kMostClusters + 1);
     for (const bool glass : {false, true}) {
-        s.n_opaque = s.clusters.size();
-        for (const std::uint32_t t : s.order) {
+        s.clusters.n_opaque = s.clusters.all.size();
+        for (const std::uint32_t t : s.clusters.order) {
             const float part = passes(t);
             if ((part > 0) != glass || (!hidden.empty() && hidden[t])) continue;
-            const bool goes_on = s.clusters.size() > (glass ? s.n_opaque : 0) && s.clusters.back().count < 3 * most &&
-                                 s.clusters.back().transmission == part;
+            const bool goes_on = s.clusters.all.size() > (glass ? s.clusters.n_opaque : 0) &&
+                                 s.clusters.all.back().count < 3 * most && s.clusters.all.back().transmission == part;
             if (!goes_on)
-                s.clusters.push_back({.first = static_cast<std::uint32_t>(sorted.size()), .transmission = part});
-            Cluster& cluster = s.clusters.back();
+                s.clusters.all.push_back({.first = static_cast<std::uint32_t>(sorted.size()), .transmission = part});
+            Cluster& cluster = s.clusters.all.back();
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::uint32_t v = s.indices[3 * t + k];
                 cluster.lo = glm::min(cluster.lo, s.positions[v]);
@@ -221,19 +232,19 @@ void GlScene::set_parts(std::span<const std::uint8_t> hidden, std::span<const fl
     // The same triangles twice: in the file's order, by which they are numbered, and in clusters.
     const auto make_array = [&](GLuint array, GLuint index, const std::vector<std::uint32_t>& values) {
         glBindVertexArray(array);
-        glBindBuffer(GL_ARRAY_BUFFER, s.mesh_buffer);
+        glBindBuffer(GL_ARRAY_BUFFER, s.mesh.buffer);
         fill_buffer(GL_ELEMENT_ARRAY_BUFFER, index, values, GL_STATIC_DRAW);
         attribute(0, 3, sizeof(Vertex), offsetof(Vertex, position));
         attribute(1, 3, sizeof(Vertex), offsetof(Vertex, normal));
         attribute(2, 2, sizeof(Vertex), offsetof(Vertex, uv));
         glBindVertexArray(0);
     };
-    make_array(s.mesh_array, s.mesh_index, numbered);
-    make_array(s.cluster_array, s.cluster_index, sorted);
+    make_array(s.mesh.array, s.mesh.index, numbered);
+    make_array(s.clusters.array, s.clusters.index, sorted);
 }
 
 bool GlScene::has_glass() const {
-    return state_->n_opaque < state_->clusters.size();
+    return state_->clusters.n_opaque < state_->clusters.all.size();
 }
 
 void GlScene::set_triangle_colours(std::span<const std::array<std::uint8_t, 4>> colours) {
@@ -285,7 +296,7 @@ struct GlScene::VisibleCluster {
 
 // Clusters that reach into a part of the picture, the nearest first: always in the same order.
 std::vector<GlScene::VisibleCluster> GlScene::clusters_in(const GlCamera& c, const PixelRect& part) const {
-    const std::vector<Cluster>& clusters = state_->clusters;
+    const std::vector<Cluster>& clusters = state_->clusters.all;
     std::vector<VisibleCluster> seen;
     for (std::uint32_t i = 0; i < clusters.size(); ++i) {
         const Cluster& cluster = clusters[i];
@@ -333,9 +344,9 @@ void GlScene::draw_backdrop(const GlCamera& c, const Vec3f& low, const Vec3f& hi
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);
-    glUseProgram(s.backdrop_program);
-    set_vector(s.backdrop_program, "u_low", low);
-    set_vector(s.backdrop_program, "u_high", high);
+    glUseProgram(s.programs.backdrop);
+    set_vector(s.programs.backdrop, "u_low", low);
+    set_vector(s.programs.backdrop, "u_high", high);
     glBindVertexArray(s.empty_array);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glBindVertexArray(0);
@@ -347,29 +358,29 @@ void GlScene::begin_model(const GlCamera& c, const GlLight& light, const DrawOpt
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LEQUAL);  // of surfaces in the same place the last one stays, now and when it is drawn again
     if (options.section != Vec4f(0)) glEnable(GL_CLIP_DISTANCE0);
-    set_view(s.mesh_program, c, light);
-    const auto at = [&](const char* name) { return glGetUniformLocation(s.mesh_program, name); };
+    set_view(s.programs.mesh, c, light);
+    const auto at = [&](const char* name) { return glGetUniformLocation(s.programs.mesh, name); };
     glUniform1f(at("u_roughness"), options.roughness);
     glUniform1f(at("u_relief"), light.relief);
     glUniform4fv(at("u_section"), 1, glm::value_ptr(options.section));
     glUniform1f(at("u_transmission"), 0);
-    s.bind_atlas(s.mesh_program, options);
-    glBindVertexArray(options.shading == Shading::triangles ? s.mesh_array : s.cluster_array);
+    s.bind_atlas(s.programs.mesh, options);
+    glBindVertexArray(options.shading == Shading::triangles ? s.mesh.array : s.clusters.array);
 }
 
 // Nothing of it hides what is drawn after it.
 void GlScene::draw_glass(std::span<const VisibleCluster> seen, const DrawOptions& options) {
     const State& s = *state_;
     const bool lit = options.shading == Shading::glaze || options.shading == Shading::clay;
-    const GLint at = glGetUniformLocation(s.mesh_program, "u_transmission");
+    const GLint at = glGetUniformLocation(s.programs.mesh, "u_transmission");
     if (lit) {
         glEnable(GL_BLEND);
         glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
         glDepthMask(GL_FALSE);
     }
     for (auto one = seen.rbegin(); one != seen.rend(); ++one) {
-        if (one->cluster < s.n_opaque) continue;
-        const Cluster& cluster = s.clusters[one->cluster];
+        if (one->cluster < s.clusters.n_opaque) continue;
+        const Cluster& cluster = s.clusters.all[one->cluster];
         if (lit) glUniform1f(at, cluster.transmission);
         glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(cluster.count), GL_UNSIGNED_INT, start_of(cluster));
     }
@@ -380,23 +391,25 @@ void GlScene::draw_glass(std::span<const VisibleCluster> seen, const DrawOptions
 void GlScene::draw_model(const GlCamera& c, const GlLight& light, const DrawOptions& options, bool still) {
     State& s = *state_;
     begin_model(c, light, options);
-    s.asked = false;
-    s.hidden.assign(s.clusters.size(), 0);
+    s.clusters.pending = false;
+    s.clusters.hidden.assign(s.clusters.all.size(), 0);
     if (options.shading == Shading::triangles) {
         glDrawElements(GL_TRIANGLES, s.n_indices, GL_UNSIGNED_INT, nullptr);
     } else {
         const std::vector<VisibleCluster> seen = clusters_in(c, {0, 0, c.width, c.height});
-        s.asked = still;
-        if (still && s.queries.empty()) {
-            s.queries.resize(s.clusters.size());
-            glGenQueries(static_cast<GLsizei>(s.queries.size()), s.queries.data());
+        s.clusters.pending = still;
+        if (still && s.clusters.queries.empty()) {
+            s.clusters.queries.resize(s.clusters.all.size());
+            glGenQueries(static_cast<GLsizei>(s.clusters.queries.size()), s.clusters.queries.data());
         }
-        if (still) s.hidden.assign(s.clusters.size(), 1);
+        if (still) s.clusters.hidden.assign(s.clusters.all.size(), 1);
         for (const VisibleCluster& one : seen) {
-            if (one.cluster >= s.n_opaque) continue;
-            const Cluster& cluster = s.clusters[one.cluster];
+            if (one.cluster >= s.clusters.n_opaque) continue;
+            const Cluster& cluster = s.clusters.all[one.cluster];
             // What is nearer is drawn already: where not a sample is seen now, none will be.
-            if (still) glBeginQuery(GL_ANY_SAMPLES_PASSED, s.queries[one.cluster]), s.hidden[one.cluster] = 0;
+            if (still)
+                glBeginQuery(GL_ANY_SAMPLES_PASSED, s.clusters.queries[one.cluster]),
+                    s.clusters.hidden[one.cluster] = 0;
             glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(cluster.count), GL_UNSIGNED_INT, start_of(cluster));
             if (still) glEndQuery(GL_ANY_SAMPLES_PASSED);
         }
@@ -408,14 +421,14 @@ void GlScene::draw_model(const GlCamera& c, const GlLight& light, const DrawOpti
 void GlScene::redraw_model(const GlCamera& c, const GlLight& light, const DrawOptions& options, const PixelRect& part,
                            std::span<const GlBox> changed) {
     State& s = *state_;
-    if (s.asked)
-        for (std::size_t i = 0; i < s.clusters.size(); ++i) {
-            if (s.hidden[i]) continue;
+    if (s.clusters.pending)
+        for (std::size_t i = 0; i < s.clusters.all.size(); ++i) {
+            if (s.clusters.hidden[i]) continue;
             GLuint passed = GL_TRUE;
-            glGetQueryObjectuiv(s.queries[i], GL_QUERY_RESULT, &passed);
-            s.hidden[i] = passed == GL_FALSE;
+            glGetQueryObjectuiv(s.clusters.queries[i], GL_QUERY_RESULT, &passed);
+            s.clusters.hidden[i] = passed == GL_FALSE;
         }
-    s.asked = false;
+    s.clusters.pending = false;
     begin_model(c, light, options);
     const int x = std::max(0, part.x - kBlock), y = std::max(0, part.y - kBlock);
     glEnable(GL_SCISSOR_TEST);
@@ -423,11 +436,11 @@ void GlScene::redraw_model(const GlCamera& c, const GlLight& light, const DrawOp
     std::vector<GLsizei> counts;
     std::vector<const void*> starts;
     for (const VisibleCluster& one : clusters_in(c, part)) {
-        const Cluster& cluster = s.clusters[one.cluster];
+        const Cluster& cluster = s.clusters.all[one.cluster];
         const bool meets = std::ranges::any_of(changed, [&](const GlBox& box) {
             return glm::all(glm::lessThanEqual(box.lo, cluster.hi)) && glm::all(glm::lessThanEqual(cluster.lo, box.hi));
         });
-        if (s.hidden[one.cluster] || !meets) continue;
+        if (s.clusters.hidden[one.cluster] || !meets) continue;
         counts.push_back(static_cast<GLsizei>(cluster.count));
         starts.push_back(start_of(cluster));
     }
@@ -446,13 +459,13 @@ void GlScene::draw_atlas(const AtlasWindow& window, const DrawOptions& options) 
     glClearColor(window.backdrop.x, window.backdrop.y, window.backdrop.z, 1);
     glClear(GL_COLOR_BUFFER_BIT);
     glDisable(GL_DEPTH_TEST);
-    glUseProgram(s.atlas_program);
-    const auto at = [&](const char* name) { return glGetUniformLocation(s.atlas_program, name); };
+    glUseProgram(s.programs.atlas);
+    const auto at = [&](const char* name) { return glGetUniformLocation(s.programs.atlas, name); };
     glUniform4f(at("u_window"), static_cast<float>(window.centre.x), static_cast<float>(window.centre.y),
                 static_cast<float>(0.5 * part.width / window.pixels_per_side),
                 static_cast<float>(0.5 * part.height / window.pixels_per_side));
-    s.bind_atlas(s.atlas_program, options);
-    glBindVertexArray(s.mesh_array);
+    s.bind_atlas(s.programs.atlas, options);
+    glBindVertexArray(s.mesh.array);
     glDrawElements(GL_TRIANGLES, s.n_indices, GL_UNSIGNED_INT, nullptr);
     glBindVertexArray(0);
     glDisable(GL_SCISSOR_TEST);
@@ -465,15 +478,15 @@ void GlScene::draw_solid(const GlCamera& c, const GlLight& light, const GlSolid&
     for (std::size_t i = 0; i < vertices.size(); ++i)
         vertices[i] = {solid.positions[i], solid.normals[i], solid.colours[i]};
     glViewport(0, 0, c.width, c.height);
-    set_view(s.solid_program, c, light);
-    glUniform1f(glGetUniformLocation(s.solid_program, "u_opacity"), opacity);
+    set_view(s.programs.solid, c, light);
+    glUniform1f(glGetUniformLocation(s.programs.solid, "u_opacity"), opacity);
     glEnable(GL_DEPTH_TEST);
-    glBindVertexArray(s.solid_array);
-    fill_buffer(GL_ARRAY_BUFFER, s.solid_buffer, vertices, GL_STREAM_DRAW);
+    glBindVertexArray(s.solid.array);
+    fill_buffer(GL_ARRAY_BUFFER, s.solid.buffer, vertices, GL_STREAM_DRAW);
     attribute(0, 3, sizeof(SolidVertex), offsetof(SolidVertex, position));
     attribute(1, 3, sizeof(SolidVertex), offsetof(SolidVertex, normal));
     attribute(2, 3, sizeof(SolidVertex), offsetof(SolidVertex, colour));
-    fill_buffer(GL_ELEMENT_ARRAY_BUFFER, s.solid_index, solid.triangles, GL_STREAM_DRAW);
+    fill_buffer(GL_ELEMENT_ARRAY_BUFFER, s.solid.index, solid.triangles, GL_STREAM_DRAW);
     const auto draw = [&] {
         glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(solid.triangles.size()), GL_UNSIGNED_INT, nullptr);
     };

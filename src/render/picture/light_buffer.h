@@ -18,8 +18,8 @@ enum class HitKind : std::uint8_t { backdrop, floor, object };
 struct ViewHit {
     HitKind kind = HitKind::backdrop;
     std::uint32_t triangle = kNone;
-    float b1 = 0, b2 = 0;
-    Vec3f position{0};
+    float b1 = 0, b2 = 0;   ///< barycentric weights of corners 1 and 2
+    Vec3f position{0};      ///< metres, world
     Vec3f normal{0, 0, 1};  ///< unit, smooth, towards the eye
     Vec3f face{0, 0, 1};    ///< unit, of the flat triangle, towards the eye
 };

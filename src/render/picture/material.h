@@ -14,7 +14,7 @@ namespace tuft::render {
 /// ink's relief as the vector to subtract from the normal.
 struct Material {
     Vec3f albedo{0.8f};
-    float roughness = 0;
+    float roughness = 0;  ///< of the coat, 0–1
     Vec3f slope{0};
 };
 

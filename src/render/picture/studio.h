@@ -13,10 +13,10 @@ namespace tuft::render {
 /// over the last part `kEdge` on each side of its border.
 struct SoftBox {
     static constexpr float kEdge = 0.12f;
-    Vec3f centre{0};
+    Vec3f centre{0};               ///< metres
     Vec3f u{1, 0, 0}, v{0, 1, 0};  ///< half axes, metres
     Vec3f normal{0, 0, 1};         ///< unit, towards the subject
-    Vec3f radiance{1};
+    Vec3f radiance{1};             ///< linear, towards the normal
 };
 
 /// Lamps, dome and floor about the object.
@@ -25,10 +25,10 @@ struct Studio {
     Vec3f centre{0};               ///< of the object
     float radius = 1;              ///< of its bounding sphere, metres
     bool floor = true;
-    float floor_z = 0;
-    Vec3f floor_albedo{0.5f};
-    float scale = 1;  ///< exposure, already in all radiances
-    float dome = 1;   ///< factor on the dome's light
+    float floor_z = 0;         ///< metres
+    Vec3f floor_albedo{0.5f};  ///< linear reflectance
+    float scale = 1;           ///< exposure, already in all radiances
+    float dome = 1;            ///< factor on the dome's light
     bool raking = false;
 };
 
@@ -56,9 +56,9 @@ Vec3f box_radiance(const Studio& studio, const Vec3f& origin, const Vec3f& direc
 
 /// A point of a box seen from p, with the light it would give a face with normal n.
 struct BoxSample {
-    Vec3f direction{0};
-    float distance = 0;
-    Vec3f light{0};  ///< radiance · cos · cos · area / distance² / π
+    Vec3f direction{0};  ///< unit, from p
+    float distance = 0;  ///< metres
+    Vec3f light{0};      ///< radiance · cos · cos · area / distance² / π
 };
 BoxSample sample_box(const SoftBox& box, const Vec3f& p, const Vec3f& n, const Vec2f& s);
 

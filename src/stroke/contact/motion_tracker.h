@@ -10,7 +10,7 @@ namespace tuft::stroke {
 
 /// Displacements since the pose before, metres, (t, b) of the contact frame; zero at first contact.
 struct ContactMotion {
-    Vec2 hand{0};
+    Vec2 hand{0};  ///< of the ferrule
     Vec2 hair{0};  ///< of the touching hair: while it is lifted it moves on along its track though the hand rests
 };
 

@@ -71,9 +71,9 @@ struct BrushFit {
 
 /// Placement and size of a drawing.
 struct DrawingPlace {
-    Placement placement;  ///< `centre` is mapped to its origin; its mapping is not used
-    Vec2 centre{0};       ///< metres, frame of the drawing
-    double scale = 1;
+    Placement placement;    ///< `centre` is mapped to its origin; its mapping is not used
+    Vec2 centre{0};         ///< metres, frame of the drawing
+    double scale = 1;       ///< times the size in the file
     bool mirrored = false;  ///< flipped in x
 };
 

@@ -34,11 +34,11 @@ struct Fill {
     std::uint32_t layer = kFirstLayer;  ///< id of the layer filled, or `kPaletteLayer`
     std::uint32_t mask = 0;             ///< id of the mask it stays within; 0: none
     PlaceNames names;                   ///< of a stroke file, until `layer` and `mask` are set
-    double film = 1.8;
+    double film = 1.8;                  ///< film units where t is 0
     Gradient gradient = Gradient::none;
-    double to_film = 1.8;
-    std::string to_ink;   ///< name of the second ink; empty: the first one
-    Vec3 from{0}, to{0};  ///< of the gradient
+    double to_film = 1.8;  ///< film units where t is 1
+    std::string to_ink;    ///< name of the second ink; empty: the first one
+    Vec3 from{0}, to{0};   ///< of the gradient
     Region region = Region::all;
     Vec3 at{0};  ///< on or near the surface, for `Region::part` and `chart`
 
