@@ -297,6 +297,31 @@ TEST_F(Cad, LooseFacesAreSewnAndOpenOnesStayOpen) {
     EXPECT_EQ(surface.report.components, 1u);
 }
 
+// As of SOT23.stp of FreeCAD's electronic parts: 73 surfaces of one body, each a product.
+TEST_F(Cad, SurfacesThatAreProductsOfTheirOwnAreSewnAndKeepTheirNames) {
+    Handle(TDocStd_Document) document = new TDocStd_Document("BinXCAF");
+    const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+    const TopoDS_Shape part = bracket();
+    std::vector<std::string> names;
+    for (TopExp_Explorer at(part, TopAbs_FACE); at.More(); at.Next()) {
+        names.push_back("skin " + std::to_string(names.size() + 1));
+        // A copy: no edge is shared.
+        const TopoDS_Shape face = BRepBuilderAPI_Transform(at.Current(), shift(0, 0, 0), true).Shape();
+        TDataStd_Name::Set(shapes->AddShape(face, false), TCollection_ExtendedString(names.back().c_str(), true));
+    }
+    STEPCAFControl_Writer writer;
+    ASSERT_TRUE(writer.Transfer(document, STEPControl_AsIs));
+    const fs::path path = folder_ / "skins.step";
+    ASSERT_EQ(writer.Write(path.c_str()), IFSelect_RetDone);
+    const mesh::Surface surface = surface_of(path);
+    EXPECT_TRUE(surface.report.closed);
+    EXPECT_EQ(surface.report.components, 1u);
+    EXPECT_EQ(surface.report.faces_flipped, 0u) << "faces of a body agree";
+    EXPECT_NEAR(area_mm2(surface.mesh), area_of(part), 1e-3 * area_of(part));
+    EXPECT_THAT(surface.mesh.group_names, ::testing::UnorderedElementsAreArray(names));
+    EXPECT_EQ(read_model(path, {.groups = CadGroups::faces}).group_names.size(), names.size());
+}
+
 TEST_F(Cad, SameFileSameBits) {
     const fs::path path = step(bracket(), "bracket.step");
     const mesh::PolygonSoup a = read_model(path), b = read_model(path);

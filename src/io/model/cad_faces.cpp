@@ -174,17 +174,17 @@ void tessellate(const TopoDS_Shape& shape, double chord) {
 }
 
 std::size_t add_body(const TopoDS_Shape& body, const gp_Trsf& placement,
-                     const std::function<std::uint32_t(const TopoDS_Shape&, std::size_t)>& part_of, FileScene& out) {
+                     const std::function<std::uint32_t(const TopoDS_Shape&)>& part_of, FileScene& out) {
     BodyMesh mesh;
-    std::size_t n = 0, bare = 0;
-    for (TopExp_Explorer at(body, TopAbs_FACE); at.More(); at.Next(), ++n) {
+    std::size_t bare = 0;
+    for (TopExp_Explorer at(body, TopAbs_FACE); at.More(); at.Next()) {
         MeshedFace f{.face = TopoDS::Face(at.Current())};
         f.triangles = BRep_Tool::Triangulation(f.face, f.location);
         if (f.triangles.IsNull() || f.triangles->NbTriangles() == 0) {
             ++bare;
             continue;
         }
-        f.part = part_of(f.face, n);
+        f.part = part_of(f.face);
         mesh.add(f);
     }
     mesh.write(placement, out);

@@ -15,9 +15,8 @@ void tessellate(const TopoDS_Shape& shape, double chord);
 
 /// Adds the triangles of a tessellated body. Nodes on a shared edge or vertex become one point, so that a closed shell
 /// is closed. `placement` leads from the body's millimetres to the model's, and points are stored in metres. `part_of`
-/// gives the part of the n-th face, from 0. Returns the number of faces without triangles.
+/// gives the part of a face, in their order. Returns the number of faces without triangles.
 std::size_t add_body(const TopoDS_Shape& body, const gp_Trsf& placement,
-                     const std::function<std::uint32_t(const TopoDS_Shape& face, std::size_t n)>& part_of,
-                     FileScene& out);
+                     const std::function<std::uint32_t(const TopoDS_Shape& face)>& part_of, FileScene& out);
 
 }  // namespace tuft::io

@@ -138,8 +138,11 @@ using ShapeMap = NCollection_DataMap<TopoDS_Shape, Value, TopTools_ShapeMapHashe
 struct Product {
     std::string name;
     std::vector<TopoDS_Shape> bodies;
-    ShapeMap<std::string> names;     ///< of bodies and faces
-    ShapeMap<XCAFPrs_Style> styles;  ///< of faces
+    std::vector<TopoDS_Shape> loose;  ///< faces outside of closed shells, until they are sewn
+    ShapeMap<std::string> names;      ///< of bodies and faces
+    ShapeMap<std::string> sheets;     ///< of faces of several products that are sewn as one: the product of each
+    ShapeMap<XCAFPrs_Style> styles;   ///< of faces
+    bool tessellated = false;
 };
 
 std::vector<TopoDS_Shape> parts_of(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind,
@@ -164,8 +167,15 @@ TopoDS_Compound compound_of(const std::vector<TopoDS_Shape>& shapes) {
     return all;
 }
 
+template <class Value>
+void hand_on(const TopoDS_Shape& from, const TopoDS_Shape& to, ShapeMap<Value>& values) {
+    if (const Value* value = values.Seek(from)) values.Bind(to, Value(*value));
+}
+
 /// Sews loose faces into shells. What was said of a face is said of what becomes of it.
-void sew(const std::vector<TopoDS_Shape>& faces, double diagonal, Product& product) {
+void sew(double diagonal, Product& product) {
+    const std::vector<TopoDS_Shape> faces = std::move(product.loose);
+    product.loose.clear();
     ShapeAnalysis_ShapeTolerance measure;
     const double stated = measure.Tolerance(compound_of(faces), 1);
     BRepBuilderAPI_Sewing sewing(std::clamp(stated, kSewn * diagonal, kChordPart * diagonal));
@@ -174,8 +184,9 @@ void sew(const std::vector<TopoDS_Shape>& faces, double diagonal, Product& produ
     for (const TopoDS_Shape& face : faces) {
         if (!sewing.IsModified(face)) continue;
         const TopoDS_Shape became = sewing.Modified(face);
-        if (product.styles.IsBound(face)) product.styles.Bind(became, product.styles.Find(face));
-        if (product.names.IsBound(face)) product.names.Bind(became, product.names.Find(face));
+        hand_on(face, became, product.styles);
+        hand_on(face, became, product.names);
+        hand_on(face, became, product.sheets);
     }
     const TopoDS_Shape sewn = sewing.SewedShape();
     if (sewn.IsNull()) return;
@@ -185,8 +196,8 @@ void sew(const std::vector<TopoDS_Shape>& faces, double diagonal, Product& produ
     if (!alone.empty()) product.bodies.push_back(compound_of(alone));
 }
 
-void find_bodies(const TopoDS_Shape& shape, double diagonal, Product& product) {
-    std::vector<TopoDS_Shape> loose;
+void find_bodies(const TopoDS_Shape& shape, Product& product) {
+    std::vector<TopoDS_Shape>& loose = product.loose;
     const auto sort_out = [&](const std::vector<TopoDS_Shape>& bodies) {
         for (const TopoDS_Shape& body : bodies) {
             if (is_closed(body)) {
@@ -201,7 +212,6 @@ void find_bodies(const TopoDS_Shape& shape, double diagonal, Product& product) {
     sort_out(parts_of(shape, TopAbs_SHELL, TopAbs_SOLID));
     const std::vector<TopoDS_Shape> faces = parts_of(shape, TopAbs_FACE, TopAbs_SHELL);
     loose.insert(loose.end(), faces.begin(), faces.end());
-    if (!loose.empty()) sew(loose, diagonal, product);
 }
 
 /// The finest statement counts: that of a face before that of its shell, of its solid, of the whole.
@@ -241,12 +251,13 @@ class CadScene {
     }
 
     FileScene run() {
-        std::size_t placements = 0;
+        join_sheets();
         for (XCAFPrs_DocumentExplorer at(document_, XCAFPrs_DocumentExplorerFlags_OnlyLeafNodes); at.More();
              at.Next()) {
-            if (++placements > kMostPlacements) throw std::runtime_error(kTooManyCopies);
             const XCAFPrs_DocumentNode& node = at.Current();
-            add_product(product(node.RefLabel), node);
+            Product& one = product(node.RefLabel);
+            tessellate_once(one);
+            add_product(one, node);
         }
         if (bare_ > 0) out_.warnings.push_back(Message("{} faces of the file could not be made into triangles", bare_));
         if (out_.counts.empty()) throw std::runtime_error(kNoCadFaces);
@@ -263,29 +274,84 @@ class CadScene {
         find_names(label, *known);
         find_styles(label, *known);
         const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
-        if (!shape.IsNull()) find_bodies(shape.Located(TopLoc_Location()), diagonal_, *known);
-        for (const TopoDS_Shape& body : known->bodies) tessellate(body, chord_);
+        if (!shape.IsNull()) find_bodies(shape.Located(TopLoc_Location()), *known);
         return *known;
     }
 
+    void tessellate_once(Product& product) {
+        if (product.tessellated) return;
+        product.tessellated = true;
+        if (!product.loose.empty()) sew(diagonal_, product);
+        for (const TopoDS_Shape& body : product.bodies) tessellate(body, chord_);
+    }
+
+    /// A product with loose faces, and a place of it.
+    struct Sheet {
+        Product* product;
+        XCAFPrs_DocumentNode node;
+    };
+
+    /// Some modellers write each surface of a body as a product of its own (73 of them for one transistor): loose faces
+    /// of products that have one place are sewn together, as part of the first of these.
+    void join_sheets() {
+        std::vector<Sheet> sheets;
+        std::map<const Product*, std::size_t> uses;
+        std::size_t placements = 0;
+        for (XCAFPrs_DocumentExplorer at(document_, XCAFPrs_DocumentExplorerFlags_OnlyLeafNodes); at.More();
+             at.Next()) {
+            if (++placements > kMostPlacements) throw std::runtime_error(kTooManyCopies);
+            Product& one = product(at.Current().RefLabel);
+            if (!one.loose.empty() && ++uses[&one] == 1) sheets.push_back({&one, at.Current()});
+        }
+        std::erase_if(sheets, [&](const Sheet& sheet) { return uses[sheet.product] > 1; });
+        if (sheets.size() < 2) return;
+        Product& whole = *sheets.front().product;
+        const TopLoc_Location back = sheets.front().node.Location.Inverted();
+        std::vector<TopoDS_Shape> joined;
+        for (const Sheet& sheet : sheets) {
+            const std::string name = unique(name_of(*sheet.product, sheet.node));
+            const std::vector<TopoDS_Shape> faces = std::move(sheet.product->loose);
+            sheet.product->loose.clear();
+            for (const TopoDS_Shape& face : faces) {
+                const TopoDS_Shape moved = face.Moved(back * sheet.node.Location);
+                const XCAFPrs_Style* style = sheet.product->styles.Seek(face);
+                whole.styles.Bind(moved, XCAFPrs_Style(style ? *style : sheet.node.Style));
+                if (const std::string* own = sheet.product->names.Seek(face))
+                    whole.names.Bind(moved, std::string(*own));
+                whole.sheets.Bind(moved, name);
+                joined.push_back(moved);
+            }
+        }
+        whole.loose = std::move(joined);
+    }
+
+    static std::string name_of(const Product& product, const XCAFPrs_DocumentNode& node) {
+        std::string name = product.name.empty() ? io::name_of(node.Label) : product.name;
+        return name.empty() ? "part" : name;
+    }
+
     void add_product(const Product& product, const XCAFPrs_DocumentNode& node) {
-        std::string name = product.name.empty() ? name_of(node.Label) : product.name;
-        if (name.empty()) name = "part";
-        for (std::size_t i = 0; i < product.bodies.size(); ++i) {
-            const TopoDS_Shape& body = product.bodies[i];
+        const std::string name = name_of(product, node);
+        for (const TopoDS_Shape& body : product.bodies) {
             std::string of_body = name;
             if (const std::string* own = product.names.Seek(body); own && product.bodies.size() > 1) of_body = *own;
-            of_body = unique(of_body);
-            std::map<std::uint32_t, std::uint32_t> parts;  // by material
-            const auto part_of = [&](const TopoDS_Shape& face, std::size_t n) {
+            const bool joined = product.sheets.IsBound(TopExp_Explorer(body, TopAbs_FACE).Current());
+            if (!joined) of_body = unique(of_body);
+            std::map<std::pair<std::string, std::uint32_t>, std::uint32_t> parts;  // by sheet or body, and material
+            std::map<std::string, std::size_t> n_faces;
+            const auto part_of = [&](const TopoDS_Shape& face) {
                 const XCAFPrs_Style* style = product.styles.Seek(face);
-                const std::uint32_t material = material_of(style ? *style : XCAFPrs_Style(), node.Style);
+                const std::string* sheet = product.sheets.Seek(face);
+                const std::uint32_t material =
+                    material_of(style ? *style : XCAFPrs_Style(), sheet ? XCAFPrs_Style() : node.Style);
+                const std::string& object = sheet ? *sheet : of_body;
                 if (by_faces_) {
                     const std::string* own = product.names.Seek(face);
-                    return add_part(of_body + (own ? " " + *own : " face " + std::to_string(n + 1)), material);
+                    const std::size_t n = ++n_faces[object];
+                    return add_part(object + (own ? " " + *own : " face " + std::to_string(n)), material);
                 }
-                const auto [at, is_new] = parts.try_emplace(material, kNone);
-                if (is_new) at->second = add_part(of_body, material);
+                const auto [at, is_new] = parts.try_emplace({object, material}, kNone);
+                if (is_new) at->second = add_part(object, material);
                 return at->second;
             };
             bare_ += add_body(body, node.Location.Transformation(), part_of, out_);
