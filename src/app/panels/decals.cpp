@@ -56,9 +56,11 @@ void film_rows(Ui& ui, DecalSettings& c) {
     }
     constexpr float kSliderWidth = 330;
     ui.named_slider("Most strain", c.max_strain, {0.001, 0.5, "%.1f %%", 0.01},
-                    "How far the film may be stretched over the model; pieces are cut until it holds", ui.px(kSliderWidth));
+                    "How far the film may be stretched over the model; pieces are cut until it holds",
+                    ui.px(kSliderWidth));
     ui.named_slider("Bleed", c.bleed, {0, 0.1, "%.0f mm", kMillimetre}, "Film beyond the paint", ui.px(kSliderWidth));
-    ui.named_slider("Overlap", c.overlap, {0, 0.05, "%.0f mm", kMillimetre}, "Of two pieces that meet", ui.px(kSliderWidth));
+    ui.named_slider("Overlap", c.overlap, {0, 0.05, "%.0f mm", kMillimetre}, "Of two pieces that meet",
+                    ui.px(kSliderWidth));
 }
 
 /// The pages and what is printed on them.
