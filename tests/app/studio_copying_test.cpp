@@ -87,7 +87,8 @@ TEST_F(StudioCopying, StrokesAreDraggedSplitJoinedRemovedAndTakenBackByHand) {
 
 // What is saved is a source of characters.
 TEST_F(StudioCopying, IsSavedAsAFileThatTheToolAndTheCommandRead) {
-    const std::string file = path("\xe5\x8d\x81.json");
+    fs::create_directories(path("glyphs"));
+    const std::string file = path("glyphs/\xe5\x8d\x81.json");
     const Ran ran = studio(copied() + "click Save...\nwait 0.3\nkey ctrl+a\ntype \"" + file +
                                "\"\nkey enter\nwait 0.3\nexpect message Saved\n",
                            kWindow);
@@ -96,7 +97,7 @@ TEST_F(StudioCopying, IsSavedAsAFileThatTheToolAndTheCommandRead) {
     const nlohmann::json written = tuft("write '" + source_folder() +
                                         "/models/sheet.ply' --place 0,0,0 --atlas-size 256 --text "
                                         "\xe5\x8d\x81 --fit --size 30 --glyphs '" +
-                                        folder_.string() + "' --project '" + path("a.tuft") + "'");
+                                        path("glyphs") + "' --project '" + path("a.tuft") + "'");
     EXPECT_EQ(written.at("strokes").size(), 2u);
 }
 

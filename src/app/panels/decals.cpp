@@ -54,11 +54,13 @@ void film_rows(Ui& ui, DecalSettings& c) {
         c.bleed = kind.bleed;
         c.overlap = kind.overlap;
     }
-    constexpr float kWidth = 330;
+    constexpr float kSliderWidth = 330;
     ui.named_slider("Most strain", c.max_strain, {0.001, 0.5, "%.1f %%", 0.01},
-                    "How far the film may be stretched over the model; pieces are cut until it holds", ui.px(kWidth));
-    ui.named_slider("Bleed", c.bleed, {0, 0.1, "%.0f mm", kMillimetre}, "Film beyond the paint", ui.px(kWidth));
-    ui.named_slider("Overlap", c.overlap, {0, 0.05, "%.0f mm", kMillimetre}, "Of two pieces that meet", ui.px(kWidth));
+                    "How far the film may be stretched over the model; pieces are cut until it holds",
+                    ui.px(kSliderWidth));
+    ui.named_slider("Bleed", c.bleed, {0, 0.1, "%.0f mm", kMillimetre}, "Film beyond the paint", ui.px(kSliderWidth));
+    ui.named_slider("Overlap", c.overlap, {0, 0.05, "%.0f mm", kMillimetre}, "Of two pieces that meet",
+                    ui.px(kSliderWidth));
 }
 
 /// The pages and what is printed on them.

@@ -13,10 +13,10 @@
 /// paint thread and by `cli`.
 namespace tuft::io {
 
-inline constexpr const char* kReferences = "reference";  ///< kind: `about` is JSON, `bytes` an image file
-inline constexpr const char* kSnapshots = "snapshot";    ///< kind: `about` is JSON, `bytes` of `pack_entries`
+inline constexpr const char* kReferences = "reference";     ///< kind: `about` is JSON, `bytes` an image file
+inline constexpr const char* kSnapshots = "snapshot";       ///< kind: `about` is JSON, `bytes` of `pack_entries`
 inline constexpr const char* kCopies = "copied character";  ///< kind: `about` is JSON, `bytes` an image file
-inline constexpr std::size_t kMostAttachments = 200;     ///< of a kind
+inline constexpr std::size_t kMostAttachments = 200;        ///< of a kind
 inline constexpr std::size_t kMostAttachmentBytes = std::size_t{256} << 20;  ///< of one
 
 /// Named bytes in a project.
