@@ -118,7 +118,7 @@ TEST(Geodesics, PathsAreAsLongAsCgals) {
             const auto triangle = static_cast<std::uint32_t>(random.uniform(0, 1) * double(m.n_triangles()));
             const Vec3 origin = mesh::surface_point(m, triangle, 0.3, 0.3).position;
             mesh::ExactGeodesics ours;
-            ASSERT_TRUE(ours.spread(m, triangle, origin, kRadius, 1'000'000));
+            ASSERT_TRUE(ours.spread(m, triangle, origin, kRadius, {.windows = 1'000'000}));
             const testing::ExactGeodesics cgals(m, triangle, origin, 1.2 * kRadius);
             for (std::size_t k = 0; k < ours.n_faces(); k += 1 + ours.n_faces() / 40) {
                 const std::uint32_t at = ours.triangle(k);

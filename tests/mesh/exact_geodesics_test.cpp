@@ -52,9 +52,9 @@ struct Stand {
     ExactGeodesics geodesics;
 
     explicit Stand(TriangleMesh m) : mesh(std::move(m)) {}
-    bool from(const Vec3& p, double radius = 2) {
+    bool from(const Vec3& p, double radius = 2, double merge = 0) {
         const auto at = query.closest_point(p);
-        return geodesics.spread(mesh, at->triangle, at->position, radius, kMost);
+        return geodesics.spread(mesh, at->triangle, at->position, radius, {kMost, merge});
     }
     ExactGeodesics::Geodesic to(const Vec3& p) const {
         const auto at = query.closest_point(p);
@@ -120,13 +120,41 @@ TEST(ExactGeodesics, AreAsLongThereAsBack) {
     }
 }
 
+TEST(ExactGeodesics, MergedWindowsGrowWithTheTrianglesAndPathsStay) {
+    // A panel of a metre arched by 10 mm, cut finer and finer: each vertex parts the paths, so that a triangle is
+    // crossed by ever more windows. Their sources lie within a micrometre, for its angle is less than 2π by 5e-7.
+    const auto panel = [](Vec2 p) { return Vec3(p, 0.01 * std::sin(3 * p.x) * std::sin(3 * p.y)); };
+    constexpr double kMerge = 1e-6;
+    double parted_before = 0;
+    for (const int n : {64, 128}) {
+        Stand exact(sheet(n, panel)), merged(sheet(n, panel));
+        const Vec3 origin = panel({0.4, 0.3});
+        ASSERT_TRUE(exact.from(origin, 0.4));
+        ASSERT_TRUE(merged.from(origin, 0.4, kMerge));
+        const auto faces = static_cast<double>(exact.geodesics.n_faces());
+        const double parted = static_cast<double>(exact.geodesics.n_windows()) / faces;
+        EXPECT_GT(parted, 1.5 * parted_before);  // with the length of the paths in triangles, 2, but for those near by
+        parted_before = parted;
+        // Two of a triangle's edges let a window in, and some came too late to be joined.
+        EXPECT_LT(static_cast<double>(merged.geodesics.n_windows()) / faces, 4) << n;
+        Random random(7);
+        for (int i = 0; i < 200; ++i) {
+            const Vec3 p = panel({random.uniform(0.2, 0.6), random.uniform(0.1, 0.5)});
+            const auto a = exact.to(p), b = merged.to(p);
+            // Of the first order across the path, of the second along it; a path meets some hundred vertices.
+            EXPECT_NEAR(a.length, b.length, kMerge);
+            EXPECT_LT(a.length * glm::length(a.start_direction - b.start_direction), 100 * kMerge);
+        }
+    }
+}
+
 TEST(ExactGeodesics, EndAtTheRadiusAndAtTheMostWindows) {
     Stand stand(sheet(32, flat));
     ASSERT_TRUE(stand.from(flat({0.5, 0.5}), 0.2));
     EXPECT_NEAR(stand.to(flat({0.6, 0.6})).length, std::hypot(0.1, 0.1), 1e-6);
     EXPECT_TRUE(std::isinf(stand.to(flat({0.9, 0.5})).length));
-    EXPECT_FALSE(stand.geodesics.spread(stand.mesh, 0, stand.mesh.position(0, 0), 10, 100));
-    EXPECT_FALSE(stand.geodesics.spread(stand.mesh, kNone, Vec3{0}, 10, kMost));
+    EXPECT_FALSE(stand.geodesics.spread(stand.mesh, 0, stand.mesh.position(0, 0), 10, {100, 0}));
+    EXPECT_FALSE(stand.geodesics.spread(stand.mesh, kNone, Vec3{0}, 10, {kMost, 0}));
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include <Eigen/Sparse>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <span>
 
 #include "atlas/flatten/flatten.h"
+#include "atlas/flatten/ldlt.h"
 #include "atlas/flatten/reference.h"
 
 namespace tuft::atlas {
@@ -74,7 +73,7 @@ Part part_of(const ChartMesh& chart, std::span<const std::uint32_t> faces) {
     return part;
 }
 
-using Stiffness = Eigen::SparseMatrix<double>;
+using Stiffness = LdltFactor::Matrix;
 
 /// Stiffness matrix Σ half_cot over edges, the lower half of the rows and columns of the vertices that move; `pinned`
 /// is what the others pull with.
@@ -100,11 +99,6 @@ Stiffness stiffness(const Part& part, const std::vector<Vec2>& uv, std::vector<V
     matrix.setFromTriplets(entries.begin(), entries.end());
     return matrix;
 }
-
-/// Two right hand sides at a time, the coordinates of the vertices. One thread, no pivoting, the same bits on every
-/// CPU.
-using Factor = Eigen::SimplicialLDLT<Stiffness, Eigen::Lower, Eigen::AMDOrdering<int>>;
-using Coordinates = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
 struct Rotation {
     double c = 1, s = 0;  // cosine and sine
@@ -163,7 +157,7 @@ double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& op
     Part part = faces.empty() ? whole(chart) : part_of(chart, faces);
     if (part.n_free == 0) return 0;
     const double area = std::max(part.area, 1e-300);
-    Factor factor;
+    LdltFactor factor;
     std::vector<Vec2> at(part.vertex.size()), rhs(part.vertex.size()), pinned;
     for (std::size_t v = 0; v < at.size(); ++v) at[v] = uv[part.vertex[v]];
     const auto hand_out = [&] {
@@ -185,13 +179,11 @@ double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& op
             if (options.should_stop(step)) break;
         }
         before = energy;
-        if (step == 0) {
-            factor.compute(stiffness(part, at, pinned));
-            if (factor.info() != Eigen::Success || !factor.vectorD().allFinite()) break;
-        }
+        if (step == 0 && !factor.compute(stiffness(part, at, pinned))) break;
         for (std::size_t v = 0; v < part.n_free; ++v) rhs[v] += pinned[v];
-        const auto n = static_cast<Eigen::Index>(part.n_free);
-        Eigen::Map<Coordinates>(&at[0].x, n, 2) = factor.solve(Eigen::Map<const Coordinates>(&rhs[0].x, n, 2));
+        const std::span<Vec2> moving = std::span(at).first(part.n_free);
+        std::copy_n(rhs.begin(), part.n_free, moving.begin());
+        factor.solve(moving);
     }
     hand_out();
     return energy;

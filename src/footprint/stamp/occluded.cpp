@@ -13,6 +13,7 @@ namespace {
 constexpr double kFewOccluded = 0.01;          // of the clusters: fewer are left where the walk placed them
 constexpr double kBeyond = 1.1;                // of the reach: clusters that begin there
 constexpr std::size_t kMostWindows = 120'000;  // some 20 ms
+constexpr double kMerge = 0.005;               // texels; sums of a hundred move a path by half of one at most
 constexpr double kBeside = 1e-3;               // of a triangle: rounding of positions in the atlas
 
 /// Finds the triangle of each cluster centre. Of the triangles that contain the centre in the atlas, up to rounding,
@@ -109,7 +110,9 @@ void resolve_occluded(const Surface& surface, const Reach& reach, const Start& s
     if (occluded == 0 || static_cast<double>(occluded) < kFewOccluded * n_clusters) return;
     mesh::ExactGeodesics& geodesics = scratch.geodesics;
     const double radius = kBeyond * static_cast<double>(reach.radius);
-    if (!geodesics.spread(surface.mesh, start.triangle, start.frame.origin, radius, kMostWindows)) return;
+    if (!geodesics.spread(surface.mesh, start.triangle, start.frame.origin, radius,
+                          {kMostWindows, kMerge * surface.texels.texel_size}))
+        return;
     CentreLocator locator(surface, scratch.triangle_cache);
     for (std::size_t i = 0; i < geodesics.n_faces(); ++i) locator.add_triangle(geodesics.triangle(i));
     const OccludedClusters occluded_clusters{surface.mesh, geodesics, start.frame,

@@ -45,11 +45,12 @@ double nearest_on(const Vec2& s, double from, double to) {
 
 }  // namespace
 
-void ExactGeodesics::begin(const TriangleMesh& mesh, double radius) {
+void ExactGeodesics::begin(const TriangleMesh& mesh, double radius, double merge) {
     face_numbers_.clear();
     vertex_numbers_.clear();
     mesh_ = &mesh;
     radius_ = radius;
+    merge_ = merge;
     faces_.clear();
     vertices_.clear();
     windows_.clear();
@@ -126,13 +127,40 @@ void ExactGeodesics::add_window(std::uint32_t face, int edge, double from, doubl
     if (is_dominated(faces_[face], edge, from, to, source)) return;
     const Corner to_face = over(face, edge);
     if (to_face.face == kNone) return;
-    const double near = source.before + nearest_on(source.at, from, to);
     std::uint32_t& list = faces_[to_face.face].windows[to_face.corner];
-    const auto index = static_cast<std::uint32_t>(windows_.size());
-    windows_.push_back({to_face.face, static_cast<std::uint8_t>(to_face.corner), length - to, length - from,
-                        Vec2{length, 0} - source.at, source.before, -source.turn, source.root, list});
-    list = index;
-    enqueue(near, index, false);
+    const Window window{to_face.face,  static_cast<std::uint8_t>(to_face.corner),
+                        false,         length - to,
+                        length - from, Vec2{length, 0} - source.at,
+                        source.before, -source.turn,
+                        source.root,   list};
+    if (const std::uint32_t same = find_mergeable(window); same != kNone) return merge(same, window);
+    list = static_cast<std::uint32_t>(windows_.size());
+    windows_.push_back(window);
+    enqueue(source.before + nearest_on(source.at, from, to), list, false);
+}
+
+/// Returns a window that waits on the same edge, ends where `window` begins or begins where it ends, and has the same
+/// source, up to `merge_`; kNone: none.
+std::uint32_t ExactGeodesics::find_mergeable(const Window& window) const {
+    if (!(merge_ > 0)) return kNone;
+    for (std::uint32_t i = window.next; i != kNone; i = windows_[i].next) {
+        const Window& w = windows_[i];
+        if (w.settled || w.root != window.root || w.before != window.before) continue;
+        if (std::min(std::abs(w.to - window.from), std::abs(w.from - window.to)) > merge_) continue;
+        const Vec2 off = w.source - window.source;
+        if (glm::dot(off, off) <= merge_ * merge_) return i;
+    }
+    return kNone;
+}
+
+/// The wider window has its turn at the smaller distance of the two.
+void ExactGeodesics::merge(std::uint32_t index, const Window& window) {
+    Window& w = windows_[index];
+    const double before = nearest_on(w.source, w.from, w.to);
+    w.from = std::min(w.from, window.from);
+    w.to = std::max(w.to, window.to);
+    const double near = nearest_on(w.source, w.from, w.to);
+    if (near < before) enqueue(w.before + near, index, false);
 }
 
 /// A path reaches a corner of a face, coming on in direction `onward` (frame of the edge that begins
@@ -278,8 +306,8 @@ void ExactGeodesics::bend(const Arrival& arrival) {
 }
 
 bool ExactGeodesics::spread(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin, double radius,
-                            std::size_t most) {
-    begin(mesh, radius);
+                            const Limits& limits) {
+    begin(mesh, radius, limits.merge);
     if (triangle >= mesh.n_triangles()) return false;
     start_ = face_of(triangle);
     const Vec3 a = mesh.position(triangle, 0), x = glm::normalize(mesh.position(triangle, 1) - a);
@@ -315,15 +343,17 @@ bool ExactGeodesics::spread(const TriangleMesh& mesh, std::uint32_t triangle, co
             bend(Arrival(arrivals_[next.index]));
             continue;
         }
-        const Window& w = windows_[next.index];
+        Window& w = windows_[next.index];
+        if (w.settled) continue;  // by an earlier entry: it was merged
+        w.settled = true;
         // By what has been learnt of the vertices since.
         if (!is_dominated(faces_[w.face], w.edge, w.from, w.to, {w.source, w.before, w.turn, w.root}))
             propagate(next.index);
         // Their number grows with the area.
         const double share = static_cast<double>(ring_ + 1) / kRings,
-                     expected = static_cast<double>(most) * share * share;
+                     expected = static_cast<double>(limits.windows) * share * share;
         const auto n = static_cast<double>(windows_.size());
-        if (windows_.size() > most || (windows_.size() > kFewWindows && n > kDense * expected)) return false;
+        if (windows_.size() > limits.windows || (windows_.size() > kFewWindows && n > kDense * expected)) return false;
     }
     return true;
 }
