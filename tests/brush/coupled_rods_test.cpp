@@ -190,14 +190,13 @@ TEST(CoupledRods, WetFilmZipsTwoRodsFromAGap) {
     }
 }
 
-/// Uncoupled rods whose tips are held bear a turn of their clamps about the middle of the row, each as a cantilever:
-/// the torque per radian is 3/L³ Σ B_k x_k².
-TEST(CoupledRods, RollStiffnessIsThatOfItsCantilevers) {
-    constexpr int kCount = 5, kSegments = 24;
-    constexpr double kPitch = 0.1, kTurn = 1e-3;
-    Row row(kCount, kPitch, kSegments);
+/// Torque per radian of uncoupled rods whose tips are held, when their clamps turn about the middle, over that of as
+/// many cantilevers: 3/L³ Σ B_k (x_k² + y_k²).
+double roll_stiffness_ratio(Row row, std::span<const CoupledPair> pairs) {
+    constexpr double kTurn = 1e-3;
+    const std::size_t segments = row.rods.front().length.size();
     // Only the tips touch, so lightly that no rod buckles, and hold by friction.
-    row.obstacles.assign(kSegments + 1, {{0, 0, -5}, {0, 0, 1}, 0});
+    row.obstacles.assign(segments + 1, {{0, 0, -5}, {0, 0, 1}, 0});
     row.obstacles.back() = {{0, 0, -1}, {0, 0, 1}, 1e-4};
     row.law.stiffness = 1e3;
     row.law.stick_stiffness = 1e7;
@@ -205,19 +204,41 @@ TEST(CoupledRods, RollStiffnessIsThatOfItsCantilevers) {
     row.law.pass_tolerance = 1e-9;
     row.law.max_passes = 300;
     row.law.max_iterations = 4000;
-    row.solve();
-    double stiffness = 0;
+    const auto count = static_cast<double>(row.rods.size());
+    solve_coupled(row.problem(), pairs, row.coupling);
+    double stiffness = 0, torque = 0;
     for (Clamp& c : row.clamps) {
-        const double x = c.position.x;
-        stiffness += 3 * x * x / kCount;
-        c.position = {x * std::cos(kTurn), x * std::sin(kTurn), 0};
+        const Vec3 at = c.position;
+        stiffness += 3 * (at.x * at.x + at.y * at.y) / count;
+        c.position = {at.x * std::cos(kTurn) - at.y * std::sin(kTurn), at.x * std::sin(kTurn) + at.y * std::cos(kTurn),
+                      0};
         c.side = {std::cos(kTurn), std::sin(kTurn), 0};
     }
-    const CoupledResult r = row.solve();
-    double torque = 0;
-    for (int k = 0; k < kCount; ++k) torque -= row.clamps[k].position.x * r.rods[k].force.y;
-    // Segments of 1/24, second order: 0.1 %.
-    EXPECT_NEAR(torque / kTurn / stiffness, 1, 0.01);
+    const CoupledResult r = solve_coupled(row.problem(), pairs, row.coupling);
+    for (std::size_t k = 0; k < row.rods.size(); ++k) {
+        const Vec3 &at = row.clamps[k].position, &force = r.rods[k].force;
+        torque -= at.x * force.y - at.y * force.x;
+    }
+    return torque / kTurn / stiffness;
+}
+
+// Segments of 1/24, second order: 0.1 %.
+TEST(CoupledRods, RollStiffnessIsThatOfItsCantilevers) {
+    Row row(5, 0.1, 24);
+    EXPECT_NEAR(roll_stiffness_ratio(row, row.pairs()), 1, 0.01);
+}
+
+/// The same of a ring of six round one in the middle.
+TEST(CoupledRods, RollStiffnessOfARingIsThatOfItsCantilevers) {
+    constexpr int kAround = 6;
+    constexpr double kRadius = 0.15;
+    Row row(kAround + 1, 0.1, 24);
+    for (std::size_t k = 0; k < row.clamps.size(); ++k) {
+        const double turn = 2 * std::numbers::pi * static_cast<double>(k) / kAround;
+        row.clamps[k].position = k == 0 ? Vec3{0} : kRadius * Vec3{std::cos(turn), std::sin(turn), 0};
+        row.memories[k] = make_memory(row.rods[k], row.clamps[k]);
+    }
+    EXPECT_NEAR(roll_stiffness_ratio(row, {}), 1, 0.01);
 }
 
 }  // namespace

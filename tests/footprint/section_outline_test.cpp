@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "brush/preset/rest_shape.h"
+#include "core/system/allocations.h"
 #include "footprint/outline/outline.h"
 
 /// Contact patches of carried shapes.
@@ -198,6 +199,23 @@ TEST(SectionOutline, OfASpongeGrowsWithPressureAndTurnsWithIt) {
         }
     EXPECT_LT(different, 0.01 * same);
     EXPECT_GT(straight, 0.2 * same);
+}
+
+// The section of a sponge has some hundred crossings; a warm one finds the memory of the one before.
+TEST(SectionOutline, OfAWarmSpongeAllocatesNothing) {
+    brush::Tuft tuft = brush::make_tuft(brush::load_preset("sponge-30"));
+    const brush::ContactPlane sheet;
+    const brush::Pose pose{{0, 0, tuft.preset.length - 3e-3}, {1, 0, 0, 0}, 0};
+    const brush::TuftState state = brush::step(tuft, pose, {&sheet, 1}, 0.01);
+    const auto allocations = [&] {
+        const std::uint64_t before = allocations_of_this_thread();
+        Footprint f = rasterise_polygons(section_polygons(*tuft.carried, state.shape, Frame{}), Frame{}, 0, 1e-4);
+        open_pores(*tuft.carried, state.shape, {}, f);
+        EXPECT_GT(f.width, 100);
+        return allocations_of_this_thread() - before;
+    };
+    allocations();
+    EXPECT_EQ(allocations(), 0u);
 }
 
 }  // namespace

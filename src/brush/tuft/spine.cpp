@@ -133,7 +133,7 @@ Solved finish_spine(const SpineStep& step, Spine& spine, SolvedRod rod, const Ne
     Solved out{std::move(rod.result), {}};
     const std::span<const rod::Obstacle> met = out.result.met.empty() ? rod.obstacles : out.result.met;
     SectionOutput sections = make_sections({step.preset, spine, out.result, met, rod.node, step.rotation, step.wetness,
-                                            step.share, step.walls, neighbours});
+                                            step.share, step.walls, neighbours, rod.along, rod.broad});
     spine.side = std::move(sections.sides);
     spine.flank = std::move(sections.flank);
     spine.wide = sections.wide;

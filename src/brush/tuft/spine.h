@@ -68,6 +68,8 @@ struct SolvedRod {
     rod::Result result;                        ///< units of L and B0
     std::span<const Vec3> node;                ///< [n+1] positions of the hair, units of L
     std::span<const rod::Obstacle> obstacles;  ///< [n+1] units of L, or none
+    std::span<const Vec3> along = {},
+                          broad = {};  ///< [n+1] node_tangents and broad_axes, where they are known; or none
 };
 
 /// Makes the sections of a solved spine.

@@ -199,7 +199,8 @@ struct Rest {
 Rest rest_of(const SectionInput& in, const Recycled<Vec3>& t, const Recycled<Vec3>& e) {
     if (!in.wide()) return {in.spine.rest_radius, in.spine.rest_radius, Recycled<Vec2>(e.size(), {1, 0})};
     Rest out;
-    const Recycled<Vec3> x = broad_axes(in.spine.memory, t);
+    const Recycled<Vec3> own = in.broad.empty() ? broad_axes(in.spine.memory, t) : Recycled<Vec3>{};
+    const std::span<const Vec3> x = in.broad.empty() ? std::span<const Vec3>(own) : in.broad;
     for (std::size_t i = 0; i < e.size(); ++i) {
         const Vec2& rest = in.spine.rest_section[i];
         const double broad = rest.x * glm::dot(e[i], x[i]), thick = rest.y * glm::dot(e[i], glm::cross(x[i], t[i]));
@@ -357,7 +358,7 @@ SectionOutput make_sections(const SectionInput& in) {
     const Preset& p = in.preset;
     const rod::Memory& m = in.spine.memory;
     const std::size_t count = m.node.size();
-    const Recycled<Vec3> t = node_tangents(m);
+    const Recycled<Vec3> t = in.along.empty() ? node_tangents(m) : Recycled<Vec3>(in.along.begin(), in.along.end());
     const Wide wide = wide_axis(in, t);
     Recycled<Vec3> e(count);
     e[wide.node] = wide.direction;

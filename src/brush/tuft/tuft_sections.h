@@ -27,6 +27,7 @@ struct SectionInput {
     double share = 1;                          ///< number of spines that share the hair
     std::span<const ContactPlane> walls = {};  ///< beside the nodes, tip first; the side of e, then the other; or empty
     const Neighbours& neighbours;              ///< spines beside it
+    std::span<const Vec3> along = {}, broad = {};  ///< as in SolvedRod
 
     /// A spine of a wide ferrule: its section at rest is an ellipse.
     bool wide() const { return !spine.rest_section.empty(); }

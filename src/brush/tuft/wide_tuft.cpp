@@ -310,21 +310,28 @@ Followed follow_pose(Tuft& tuft, const Pose& to, std::span<const ContactPlane> p
     return out;
 }
 
-/// Stores the axes of every spine in the frame of the ferrule. Returns the nodes on the rounded hair, [spines][n+1].
-Recycled<Recycled<Vec3>> store_axes(Tuft& tuft, const Quat& rotation) {
-    Recycled<Recycled<Vec3>> node;
+/// Solved spines: [spines].
+struct Bent {
+    Recycled<Recycled<Vec3>> node;  ///< [n+1] on the rounded hair
+    Recycled<NodeAxes> axes;
+};
+
+/// Stores the axes of every spine in the frame of the ferrule.
+Bent store_axes(Tuft& tuft, const Quat& rotation) {
+    Bent out;
+    const Quat back = glm::conjugate(rotation);
     for (Spine& spine : tuft.spines) {
-        node.push_back(rod::curve_nodes(spine.rod, spine.memory.node));
-        const Recycled<Vec3> t = node_tangents(spine.memory);
-        spine.broad = broad_axes(spine.memory, t);
-        spine.across.resize(t.size());
-        const Quat back = glm::conjugate(rotation);
-        for (std::size_t i = 0; i < t.size(); ++i) {
-            spine.across[i] = back * glm::cross(spine.broad[i], t[i]);
-            spine.broad[i] = back * spine.broad[i];
+        out.node.push_back(rod::curve_nodes(spine.rod, spine.memory.node));
+        const NodeAxes& axes = out.axes.emplace_back(spine.memory);
+        const std::size_t count = axes.along.size();
+        spine.broad.resize(count);
+        spine.across.resize(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            spine.across[i] = back * glm::cross(axes.broad[i], axes.along[i]);
+            spine.broad[i] = back * axes.broad[i];
         }
     }
-    return node;
+    return out;
 }
 
 /// Returns the spines beside spine k.
@@ -354,12 +361,12 @@ SolvedSpines solve_spines(Tuft& tuft, const Pose& to, std::span<const ContactPla
     out.dissipation = dissipation;
     out.coupling_energy = result.energy;
     out.film_range = p.length * coupling_of(p, tuft.wetness).film_range * (tuft.wetness > 0 ? 1 : 0);
-    const Recycled<Recycled<Vec3>> node = store_axes(tuft, to.rotation);
+    const Bent bent = store_axes(tuft, to.rotation);
     std::size_t first = 0;
     for (std::size_t k = 0; k < tuft.spines.size(); ++k) {
         Spine& spine = tuft.spines[k];
         result.rods[k].slip = slip[k];
-        const Neighbours neighbours = neighbours_of(tuft, k, node);
+        const Neighbours neighbours = neighbours_of(tuft, k, bent.node);
         const std::size_t count = spine.rest_radius.size();
         const SpineStep step{.preset = p,
                              .clamp = spine.memory.clamp,
@@ -367,8 +374,13 @@ SolvedSpines solve_spines(Tuft& tuft, const Pose& to, std::span<const ContactPla
                              .walls = part_of(walls, 2 * first, 2 * count),
                              .wetness = tuft.wetness,
                              .share = 1 / spine.share};
-        out.spines.push_back(
-            finish_spine(step, spine, {std::move(result.rods[k]), node[k], coupled.obstacles[k]}, neighbours));
+        out.spines.push_back(finish_spine(step, spine,
+                                          {.result = std::move(result.rods[k]),
+                                           .node = bent.node[k],
+                                           .obstacles = coupled.obstacles[k],
+                                           .along = bent.axes[k].along,
+                                           .broad = bent.axes[k].broad},
+                                          neighbours));
         first += count;
     }
     for (std::size_t k = 0; k < tuft.beside.size(); ++k) {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <unordered_map>
+#include <utility>
 
 #include "atlas/texels/log_map.h"
 #include "core/noise.h"
@@ -133,7 +135,9 @@ Recycled<Polygon> section_polygons(const brush::CarriedShape& carried, const bru
         std::uint64_t next = 0;
         bool visited = false;
     };
-    std::unordered_map<std::uint64_t, Crossing> crossings;
+    std::unordered_map<std::uint64_t, Crossing, std::hash<std::uint64_t>, std::equal_to<>,
+                       Recycler<std::pair<const std::uint64_t, Crossing>>>
+        crossings;
     Recycled<std::uint64_t> order;  // a loop begins at the first of its crossings in the order of the triangles
     const auto crossing = [&](std::uint32_t a, std::uint32_t b) {
         if (b < a) std::swap(a, b);
