@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
-# check_documents.sh SOURCE: what the documents name exists: the targets of links, paths of files in `back quotes`, files
-# of the code by their bare names, such as (deposit.h), in READMEs of src/ the names of functions and types in `back
-# quotes`, the keys of sources, and the folders of each module in its table. Names with a capital NAME in them are patterns.
+# check_documents.sh SOURCE: what documents and comments name exists.
+# - Documents: the targets of links, paths of files in `back quotes`, files of the code by their bare names, such as
+#   (deposit.h). READMEs of src/: names of functions and types in `back quotes`. Names with a capital NAME are patterns.
+# - Comments of headers: names in `back quotes`.
+# - Keys of sources, such as [Huang2018], and the folders in the table of modules in src/README.md.
 set -euo pipefail
 export LC_ALL=C
 cd "$1"
@@ -35,6 +37,12 @@ while read -r document; do
   done < <(grep -oE '`[A-Za-z_][A-Za-z0-9_:]*(\([^`]*\))?`' "$lists/text" | tr -d '`' | sed -E 's/\(.*//; s/.*:://' |
     grep -E '_|[a-z][A-Z]' | grep -v NAME | sort -u | comm -23 - "$lists/names")
 done < <(find README.md src tests samples models -name '*.md' -not -path '*/build/*')
+# Comments of headers name in `back quotes` what the code has.
+code -print0 | xargs -0 sed 's|//.*||' | grep -ohE '[A-Za-z_][A-Za-z0-9_]*' | sort -u > "$lists/code"
+while read -r name; do
+  missing "$(grep -rlF --include='*.h' "$name" src | head -1)" "\`$name\` in a comment"
+done < <(find src -name '*.h' -print0 | xargs -0 grep -ohE '//.*' | grep -oE '`[A-Za-z_][A-Za-z0-9_:]*(\([^`]*\))?`' | tr -d '`' |
+  sed -E 's/\(.*//' | grep -vE '(^|[^:]):([^:]|$)' | sed -E 's/.*:://' | grep -E '_|[a-z][A-Z]' | sort -u | comm -23 - "$lists/code")
 # A source that is cited by its key, such as [Huang2018], has an entry in the bibliography, and each entry is cited.
 keys='\[[A-Z][A-Za-z]*[A-Za-z][0-9]{4}\]'
 while read -r key; do missing src/BIBLIOGRAPHY.md "$key is cited and has no entry"; done < <(

@@ -30,6 +30,7 @@ struct Atlas {
     std::uint32_t n_charts = 0;                 ///< number of charts
     bool from_file = false;                     ///< the UVs are those of the file
 
+    /// Returns k of the k × k pages, and the texels along a side of one.
     std::uint32_t pages_per_side() const;
     std::uint32_t page_size() const { return size / pages_per_side(); }
     /// Returns the page of a triangle: that of its centre.

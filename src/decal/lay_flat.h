@@ -14,6 +14,7 @@ namespace tuft::decal {
 struct Stretch {
     double most = 1, least = 1;
 
+    /// Returns max |σ − 1|.
     double strain() const { return std::max(most - 1, 1 - least); }
 };
 

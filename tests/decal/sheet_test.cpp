@@ -185,7 +185,9 @@ TEST_F(SheetOfFormula, NumbersMarksAndScaleBarStandOnThePage) {
             EXPECT_GE(std::min(p.x, p.y), 0);
             EXPECT_LE(p.x, 0.21);
             EXPECT_LE(p.y, 0.297);
-            if (line.role == Role::label) EXPECT_FALSE(contains(films, p));  // nothing is printed on a piece
+            if (line.role == Role::label) {
+                EXPECT_FALSE(contains(films, p));  // nothing is printed on a piece
+            }
         }
         if (line.role == Role::mark && line.points.size() == 2)
             scale = std::max(scale, glm::length(line.points[1] - line.points[0]));

@@ -24,6 +24,7 @@ struct ColourRequest {
 /// Matches colours on a thread of its own. Only the newest request counts. Window thread.
 class MixFinder {
   public:
+    /// Starts a match, or lets it wait for the running one. Of those that wait only the newest stays.
     void request(ColourRequest request);
     /// Returns the finished match of the newest request, once.
     std::optional<ink::ColourMatch> poll();

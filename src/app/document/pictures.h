@@ -33,6 +33,7 @@ class Pictures {
     void pause();
     /// Accepts requests again.
     void resume() { stop_ = false; }
+    /// Whether pictures are still made.
     bool busy() const;
     /// Frees the textures.
     void release();

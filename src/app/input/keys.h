@@ -77,6 +77,7 @@ const char* word_of(Action action);
 class KeyTable {
   public:
     KeyTable();
+    /// Returns the action of a chord.
     std::optional<Action> find(const Chord& chord) const;
     Chord chord(Action action) const { return chords_.at(action); }
     /// Gives an action a key. Another action with that key loses it and is returned.

@@ -92,6 +92,7 @@ class PointerInput {
     PointerInput(const mesh::SurfaceQuery& surface, const brush::Preset& preset, const PointerSettings& settings,
                  TipLag lag = {});
 
+    /// The cursor moves while the brush is down.
     std::vector<StrokeStep> move(const Aim& aim);
     /// Lifts the brush off.
     std::vector<StrokeStep> lift();

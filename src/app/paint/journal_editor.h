@@ -19,6 +19,7 @@ class JournalEditor {
     void add(stroke::JournalEntry entry);
     /// Joins the last step with the one before it: one undo reverts both.
     void join_last() { context_.history.done.back().joined = true; }
+    /// Take back the last step, perform it again, and change entries of the journal.
     void undo();
     void redo();
     void edit(const EditStrokes& command);

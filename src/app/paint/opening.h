@@ -57,6 +57,7 @@ class Opening {
     Opening();
     ~Opening();
 
+    /// Begins to read a file; then begins to prepare what was read.
     void inspect(const std::filesystem::path& path, const io::CadReading& cad = {});
     void prepare(Inspected inspected, const OpenOptions& options, const std::filesystem::path& project);
     /// Prepares a model that replaces another: paints the strokes of the project `former` on it.
@@ -78,6 +79,7 @@ class Opening {
         Message error;
         bool done = false;
     };
+    /// Returns the result once the work that runs has ended.
     Result poll();
 
   private:

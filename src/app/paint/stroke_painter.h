@@ -17,6 +17,7 @@ class StrokePainter {
   public:
     explicit StrokePainter(PaintContext& context) : context_(context) {}
 
+    /// Begins a stroke with its first pose still to come.
     void begin(const BeginStroke& command);
     /// `goes_on`: another command that extends the stroke comes next.
     void extend(const ExtendStroke& command, bool goes_on);

@@ -15,6 +15,7 @@ class Comparison {
   public:
     explicit Comparison(Session& session) : session_(session) {}
 
+    /// Whether two states stand side by side.
     bool on() const;
     /// Takes its part of the view's area.
     void layout();

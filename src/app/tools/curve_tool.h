@@ -15,6 +15,7 @@ class CurveTool {
   public:
     CurveTool(Session& session, TipLagCache& tip_lag) : session_(session), tip_lag_(tip_lag) {}
 
+    /// Set, move and end the move of a point of the curve.
     void press(const Event& e);
     void drag(const Event& e);
     void release(const Event& e, double now);

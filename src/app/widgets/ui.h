@@ -67,6 +67,7 @@ class Ui {
     /// Converts a length at scale 1 to pixels.
     float px(float length) const { return length * settings_.scale; }
 
+    /// Begins a frame: forgets the places of the widgets of the frame before.
     void begin_frame();
     bool enter = false;  ///< Enter was pressed; the dialog's primary button takes it
     bool in_dialog = false;

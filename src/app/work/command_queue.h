@@ -16,6 +16,7 @@ namespace tuft::app {
 /// A thread-safe queue. The window posts, the paint thread waits.
 class CommandQueue {
   public:
+    /// Appends a command. Any thread.
     void post(Command command);
     /// Ends posting. Waiting commands are still returned.
     void close();

@@ -17,6 +17,7 @@ class PhaseProgress {
     PhaseProgress(ProgressFn progress, std::string phase, double all)
         : progress_(std::move(progress)), phase_(std::move(phase)), all_(all) {}
 
+    /// Adds `work`, in the unit of `all`, to what is done, and reports it.
     void advance(double work) {
         if (!progress_ || !(work >= 0)) return;
         const std::lock_guard lock(mutex_);

@@ -42,6 +42,7 @@ struct FlatCheck {
     double stretch_999 = 0;   ///< largest singular value at 99.9 % of the area
     double uv_area = 0;       ///< sum of the signed areas of the triangles
 
+    /// Whether the UVs are those of a valid chart.
     bool sound() const { return finite && flips == 0 && !crosses; }
 };
 

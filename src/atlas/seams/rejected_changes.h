@@ -17,6 +17,7 @@ struct RejectedChanges {
     std::map<Change, int> merged;  ///< how often each was rejected
     std::map<Change, int> moved;
 
+    /// Returns how often a change was rejected.
     static int count(const std::map<Change, int>& rejected, const Change& change) {
         const auto it = rejected.find(change);
         return it == rejected.end() ? 0 : it->second;

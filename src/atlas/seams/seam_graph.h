@@ -34,6 +34,7 @@ struct NormalMoments {
 
     static NormalMoments of(double area, const Vec3f& normal);
     void add(const NormalMoments& m);
+    /// Returns the developability error, over unit².
     double error() const;
 };
 

@@ -60,6 +60,7 @@ class SeamPaths {
     bool starts_chain(std::uint32_t h) const {
         return seam_[h] && patch_.twin[h] != kNone && is_corner(patch_.vertex[h]);
     }
+    /// Returns the half-edges of the chain that starts with h, in order.
     std::vector<std::uint32_t> chain_from(std::uint32_t h) const;
 
     /// Returns the shortest path within `reach` times the chain's length of the chain. Edges with a large dihedral

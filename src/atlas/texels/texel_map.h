@@ -74,6 +74,7 @@ struct TexelMap {
     std::vector<std::uint32_t> cluster_chart;  ///< [n_clusters]
 
     std::size_t n_slots() const { return tiles.size(); }
+    /// Return position (metres) and unit normal of a texel's centre, also of a packed map.
     Vec3f position(std::uint32_t slot, int texel) const;
     Vec3f normal(std::uint32_t slot, int texel) const;
 };

@@ -49,6 +49,7 @@ struct Box {
     Vec3 lo{std::numeric_limits<double>::infinity()};
     Vec3 hi{-std::numeric_limits<double>::infinity()};
 
+    /// Grows the box so that it holds p.
     void add(const Vec3& p) {
         lo = glm::min(lo, p);
         hi = glm::max(hi, p);

@@ -100,6 +100,7 @@ class CacheReader {
         if (values.size() != 1) fail();
         return values.front();
     }
+    /// Returns the next text.
     std::string get_text();
 
     /// Throws the `Error` for an entry that is not what it should be.

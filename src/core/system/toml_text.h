@@ -10,7 +10,7 @@
 namespace tuft {
 
 /// Returns the table of `text`. `source` names the text in errors. Throws `Error` with `source` and line where it is no
-/// TOML, or nests deeper than `kDeepestToml` (core/text/nesting.h). Cost: 10 µs per kilobyte.
+/// TOML, or nests deeper than `kDeepestToml` (core/text/nesting.h). Cost: two passes.
 toml::table parse_toml(std::string_view text, const std::string& source);
 
 }  // namespace tuft

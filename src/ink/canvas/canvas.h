@@ -119,6 +119,7 @@ class Canvas {
     std::vector<std::uint32_t> take_dirty();
     void mark_dirty(std::uint32_t slot) { dirty_[slot] = 1; }
 
+    /// Returns a copy of all that a tile holds.
     TileSnapshot snapshot(std::uint32_t slot) const;
     /// Restores a tile; the slot becomes dirty. Throws `Error` when the snapshot's size does not match its planes,
     /// its slot or the pigments.

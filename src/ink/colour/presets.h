@@ -22,6 +22,7 @@ class Reader {
     /// Throws `Error` for any other key.
     void only(std::initializer_list<std::string_view> keys) const;
     bool has(std::string_view key) const { return table_.contains(key); }
+    /// Returns a number within [lo, hi]. Without a `fallback` the key must be there. Throws `Error` with the line.
     double number(std::string_view key, double lo, double hi, std::optional<double> fallback) const;
     Rgb rgb(std::string_view key, double lo, double hi) const;
     /// A list of `min` to `max` numbers.
@@ -29,6 +30,7 @@ class Reader {
     std::string text(std::string_view key, std::optional<std::string> fallback) const;
     [[noreturn]] void fail(long line, const Message& what) const;
     long line() const { return table_.source().begin.line; }
+    /// Returns the line of a key, from 1.
     long line_of(std::string_view key) const;
 
   private:

@@ -85,6 +85,7 @@ struct Stack {
     bool has_base_colour() const { return base_colour && !base_colour->empty(); }
     /// Whether a texel of the tile has another substrate than the one that a call states.
     bool differs(std::uint32_t slot) const { return substrates && substrates->differs(slot); }
+    /// Whether some canvas holds ink or liquid on a tile.
     bool touched(std::uint32_t slot) const;
     std::vector<std::uint32_t> touched_slots() const;  ///< of any layer, ascending
 };

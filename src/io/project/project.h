@@ -123,6 +123,7 @@ class Project {
     ProjectModel model() const;        ///< checked: sizes agree, indices in range, numbers finite, UVs valid
     std::uint64_t model_hash() const;  ///< of positions and triangles
 
+    /// Store a preset, in place of one of its name and kind, in one transaction.
     void put_brush(const PresetText& preset);
     void put_ink(const PresetText& preset);
     void put_substrate(const std::string& toml);

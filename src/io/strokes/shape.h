@@ -26,6 +26,7 @@ class Shape {
     bool empty() const { return rings_.empty(); }
     double area() const;       ///< m²
     double perimeter() const;  ///< metres, of all rings
+    /// Whether a point lies in the shape.
     bool contains(const Vec2& p) const;
 
     /// Returns the shape without points that lie within `tolerance` metres of the simplified ring (Douglas and Peucker

@@ -61,6 +61,7 @@ class SurfaceQuery {
     RayHit trace(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max) const;
     bool blocked(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max) const;
 
+    /// Returns the mesh that the queries are on.
     const TriangleMesh& mesh() const;
 
   private:

@@ -23,6 +23,7 @@ class SurfaceTopology {
     /// interpolated on the side. `mesh` is changed alike. Returns the number of repaired triangles.
     std::size_t turn_flat_triangles(RawMesh& mesh);
 
+    /// Counts of the surface as it is now.
     std::size_t n_components() const;
     std::size_t n_border_edges() const;
     /// Border loops: holes, and rims of open sheets.

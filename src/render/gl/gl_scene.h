@@ -109,6 +109,7 @@ class GlScene {
         double pixels_per_side = 512;
         Vec3f backdrop{0.1f};  ///< sRGB-encoded
     };
+    /// Draws the texture as a flat square into `window.part`.
     void draw_atlas(const AtlasWindow& window, const DrawOptions& options);
     void draw_solid(const GlCamera& camera, const GlLight& light, const GlSolid& solid, float opacity);
 

@@ -42,6 +42,7 @@ class GlView {
         unsigned framebuffer = 0;        ///< where it goes, with its lower left corner at
         int x = 0, y = 0;
     };
+    /// Draws a frame. While camera, light and options stay, only the part with new ink is drawn anew.
     void draw(GlScene& scene, const Frame& frame);
 
   private:

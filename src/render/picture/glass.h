@@ -50,6 +50,7 @@ class GlassSeries {
     /// Moves the camera as `PictureSeries::look_from` does.
     void look_from(const View& view);
 
+    /// Returns the camera of the last picture.
     const Camera& camera() const;
     /// Moves the picture out; the series ends with it.
     Image take_image();

@@ -43,6 +43,7 @@ class PictureSeries {
     /// `light_step` and few samples make its pixels cheap. The series must be `Length::moving`.
     void look_from(const View& view);
 
+    /// Returns the camera of the last picture.
     const Camera& camera() const;
     /// Pixels whose colour the last `draw` computed.
     std::size_t drawn_pixels() const;

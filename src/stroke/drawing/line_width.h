@@ -40,6 +40,7 @@ class LineWidths {
 /// Widths, presets and holders of brushes by name, each made at its first use. Throws `Error` as `brush::load_preset`.
 class WidthTables {
   public:
+    /// Returns the widths of a brush, measured when they are first requested, and its preset.
     const LineWidths& of(const std::string& brush);
     const brush::Preset& preset(const std::string& brush);
     /// Returns options of an upright holder over a plane that compensates the tip lag (`measure_tip_lag`).
