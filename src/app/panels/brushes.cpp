@@ -20,10 +20,10 @@ using pictures::TriedStroke;
 constexpr float kTriedHeights[] = {30, 26, 22};  // pixels at a scale of 1, by the room that there is
 constexpr float kAspect = static_cast<float>(TriedStroke::kWidth) / TriedStroke::kHeight;
 constexpr float kCardHeight = 70, kCardIcon = 28;  // pixels at a scale of 1
-constexpr float kBrowserWidth = 580, kLeastCard = 172;
+constexpr float kBrowserWidth = 580, kLeastCard = 160;
 
 // Pixels of a brush at a scale of 1, by the room that there is.
-constexpr float kRackHeights[] = {54, 40, 30};
+constexpr float kRackHeights[] = {50, 40, 30};
 
 // Sorts of hair as they look, sRGB; a brush of another sort is grey.
 unsigned hair_colour(const std::string& sort) {
@@ -119,6 +119,18 @@ std::string size_text(const Ui& ui, const brush::Preset& preset) {
                       preset.width * 1e3, 2 * preset.radius * 1e3);
     else
         std::snprintf(text, sizeof text, ui.tr("%.0f mm long, %.1f mm thick"), preset.length * 1e3,
+                      2 * preset.radius * 1e3);
+    return text;
+}
+
+/// Length, width and thickness as short as they fit on a card.
+std::string card_size(const brush::Preset& preset) {
+    char text[64];
+    if (brush::has_broad_side(preset))
+        std::snprintf(text, sizeof text, "%.0f \xc3\x97 %.0f \xc3\x97 %.1f mm", preset.length * 1e3, preset.width * 1e3,
+                      2 * preset.radius * 1e3);
+    else
+        std::snprintf(text, sizeof text, "%.0f \xc3\x97 \xc3\x98 %.1f mm", preset.length * 1e3,
                       2 * preset.radius * 1e3);
     return text;
 }
@@ -242,7 +254,8 @@ void brush_card(Session& s, const std::string& name, float width) {
     const ImVec2 at = ImGui::GetCursorScreenPos(), end(at.x + width, at.y + height);
     if (ImGui::InvisibleButton(("card " + name).c_str(), ImVec2(width, height))) choose(s.brush, name);
     ui.mark("card " + name);
-    draw_choice(ui, at, end, is_chosen(s.brush, name));
+    if (draw_choice(ui, at, end, is_chosen(s.brush, name)) && !ui.modal)
+        ImGui::SetTooltip("%s", size_text(ui, preset).c_str());
     draw_tuft_icon(ui, preset, hair_colour(sort_of(name)), ImVec2(at.x + pad, at.y + pad), icon, height - 2 * pad);
     const float x = at.x + icon + 2 * pad, letters = 0.8f * ImGui::GetFontSize(), room = width - icon - 3 * pad;
     ImDrawList* draw = ImGui::GetWindowDrawList();
@@ -251,7 +264,7 @@ void brush_card(Session& s, const std::string& name, float width) {
     const float stroke = std::min(room, (height - ImGui::GetTextLineHeight() - letters - ui.px(5)) * kAspect);
     draw_tried(ui, s.brush.tried, name, ImVec2(x, at.y + ImGui::GetTextLineHeight() + ui.px(2)), stroke);
     draw->AddText(ImGui::GetFont(), letters, ImVec2(x, end.y - letters - ui.px(3)), ui.faint,
-                  size_text(ui, preset).c_str());
+                  card_size(preset).c_str());
     draw->PopClipRect();
 }
 
