@@ -11,6 +11,7 @@
 #include "sheet.h"
 #include "stroke/deposit/stamp_batch.h"
 #include "stroke/document/document.h"
+#include "stroke/session/session.h"
 
 namespace tuft::stroke {
 namespace {
@@ -204,6 +205,20 @@ TEST(Document, CancelLeavesNothingBehind) {
     painting.cancel();
     EXPECT_EQ(painting.layers().canvas().hash(), before);
     EXPECT_EQ(painting.journal().entries().size(), 1u);
+}
+
+TEST(Document, StampsOfAWideBrushDoNotDependOnTheTexels) {
+    const brush::Preset preset = brush::load_preset("wolf-large");
+    PaintStroke s = line("wolf-large", 6e-3, make_frame({0, 0, 0}, {0, 0, 1}, {1, 0, 0}));
+    const double width = brush::tuft_width(preset);
+    EXPECT_DOUBLE_EQ(pose_spacing(s, preset, {}, width / 100), width / 100);
+    EXPECT_DOUBLE_EQ(pose_spacing(s, preset, {}, width / 512), width / 128);
+    s.settings.spacing = 3;
+    EXPECT_DOUBLE_EQ(pose_spacing(s, preset, {}, width / 512), 3 * width / 128);
+    const StrokeReport coarse = Document(sheet()).paint(s), fine = Document(sheet({}, 2 * kSize)).paint(s);
+    EXPECT_EQ(coarse.stamps, fine.stamps);
+    // The area of a stamp's edge is counted by texels, of which some 190 lie across it.
+    EXPECT_NEAR(fine.ink_given / coarse.ink_given, 1, 0.01);
 }
 
 TEST(Document, AStopWithinABatchOfStampsLeavesEverythingAsItWas) {

@@ -10,11 +10,11 @@
 namespace tuft::footprint {
 namespace {
 
-constexpr double kFewOccluded = 0.01;          // of the clusters: fewer are left where the walk placed them
-constexpr double kBeyond = 1.1;                // of the reach: clusters that begin there
-constexpr std::size_t kMostWindows = 120'000;  // some 20 ms
-constexpr double kMerge = 0.005;               // texels; sums of a hundred move a path by half of one at most
-constexpr double kBeside = 1e-3;               // of a triangle: rounding of positions in the atlas
+constexpr double kFewOccluded = 0.01;         // of the clusters: fewer are left where the walk placed them
+constexpr double kBeyond = 1.1;               // of the reach: clusters that begin there
+constexpr std::size_t kMostWindows = 40'000;  // some 10 ms
+constexpr double kMerge = 0.005;              // texels; sums of a hundred move a path by half of one at most
+constexpr double kBeside = 1e-3;              // of a triangle: rounding of positions in the atlas
 
 /// Finds the triangle of each cluster centre. Of the triangles that contain the centre in the atlas, up to rounding,
 /// the one that maps it nearest to its position in space counts.

@@ -14,7 +14,7 @@ namespace tuft::footprint {
 /// (u, v) is the geodesic's length in the direction in which it leaves `start.frame`. Each cluster is rotated by the
 /// direction in which the geodesic arrives. Behind a corner, where all geodesics leave in one direction, lengths are
 /// correct and pictures are stretched. Cost: none without folds; else 0.5 µs per triangle within reach. Where that
-/// exceeds 20 ms, the positions of the search are retained.
+/// exceeds 10 ms, the positions of the search are retained.
 void resolve_occluded(const Surface& surface, const Reach& reach, const Start& start, std::size_t occluded,
                       PlanScratch& scratch);
 

@@ -131,8 +131,8 @@ bool Document::plan_stroke(BatchStroke& planned) {
     if (!stroke.erases() && materials_.ink(stroke.ink).yield > 0) return false;
     planned.holder = materials_.holder(stroke.brush, *model_.mesh, stroke.settings.compensate_tip_lag);
     planned.preset = &preset;
-    planned.spacing =
-        pose_spacing(stroke, stroke.erases() ? ink::Ink{} : materials_.ink(stroke.ink), model_.texels.texel_size);
+    planned.spacing = pose_spacing(stroke, preset, stroke.erases() ? ink::Ink{} : materials_.ink(stroke.ink),
+                                   model_.texels.texel_size);
     PaintStroke settled = stroke;
     settle(settled);
     planned.start = brush_start(settled);

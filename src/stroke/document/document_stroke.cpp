@@ -58,7 +58,7 @@ void Document::check_size(const JournalEntry& entry) {
     std::vector<brush::Pose> drawn;
     for (const StrokeSample& s : steady(stroke->trace, stroke->settings).samples)
         drawn.push_back({.position = {s.position.x, s.position.y, 0}, .time = s.time});
-    check_path_length(drawn, {.step = kShorter * pose_spacing(*stroke, ink, texel), .lever = preset.length});
+    check_path_length(drawn, {.step = kShorter * pose_spacing(*stroke, preset, ink, texel), .lever = preset.length});
 }
 
 void Document::begin(JournalEntry entry) {

@@ -28,7 +28,7 @@ struct StrokeSettings {
     brush::SpineMethod spine = brush::SpineMethod::rod;      ///< `rod`: the method of the brush's preset
     footprint::Mapping footprint = footprint::Mapping::log;  ///< along the surface, or on one plane
     contact::Method contact = contact::Method::exact;
-    double spacing = 1.0;            ///< texels between two stamps, 0–1000
+    double spacing = 1.0;            ///< between two stamps, 0–1000; see pose_spacing
     bool compensate_tip_lag = true;  ///< flat: the hand leads the ink, which so lies on the samples
     DipMode dip = DipMode::each;
     bool endless = false;                        ///< the tuft holds before every pose what it held at pen down

@@ -13,6 +13,7 @@ namespace tuft::stroke {
 namespace {
 
 constexpr double kLeap = 0.5;          // of a patch's size: beyond, single marks would part
+constexpr double kStampsAcross = 128;  // on a path as long as the tuft is wide
 constexpr double kPrintTravel = 1e-4;  // metres that dry hair slides after it came to touch until it prints
 // Of the ink that a face of foam gives where it is pressed on, what it gives where it slides by as far: its ridges ride
 // on a thin film, and its pores wipe behind them.
@@ -38,8 +39,9 @@ HairContactOptions hair_options(const SessionInput& in, bool mixed) {
 
 }  // namespace
 
-double pose_spacing(const PaintStroke& stroke, const ink::Ink& ink, double texel) {
-    return std::max(stroke.settings.spacing * texel, is_paste(ink) ? kPasteSpacing : 0.0);
+double pose_spacing(const PaintStroke& stroke, const brush::Preset& preset, const ink::Ink& ink, double texel) {
+    const double unit = std::max(texel, brush::tuft_width(preset) / kStampsAcross);
+    return std::max(stroke.settings.spacing * unit, is_paste(ink) ? kPasteSpacing : 0.0);
 }
 
 StrokeSession::StrokeSession(SessionInput input)
@@ -62,7 +64,7 @@ StrokeSession::StrokeSession(SessionInput input)
 }
 
 ResampleOptions StrokeSession::path_options() const {
-    return {.step = pose_spacing(input_.stroke, input_.ink, input_.model.texels.texel_size),
+    return {.step = pose_spacing(input_.stroke, tuft_.preset(), input_.ink, input_.model.texels.texel_size),
             .lever = tuft_.preset().length};
 }
 

@@ -44,8 +44,10 @@ struct SessionResult {
     std::vector<ink::TileSnapshot> before;  ///< tiles that it wrote to, before the stroke, ascending by slot
 };
 
-/// Metres between two poses of a stroke with this ink on a model of this texel size.
-double pose_spacing(const PaintStroke& stroke, const ink::Ink& ink, double texel);
+/// Metres between two poses of a stroke with this brush and ink on a model of this texel size. The unit of the stroke's
+/// spacing is a texel, or for a wide brush a 128th of the tuft's width: over as short a path its footprint hardly
+/// changes, and each stamp is swept on from the one before.
+double pose_spacing(const PaintStroke& stroke, const brush::Preset& preset, const ink::Ink& ink, double texel);
 
 /// Paints one stroke:
 ///
