@@ -64,7 +64,7 @@ std::string parallel_script(const ScriptOptions& o) {
 
 std::string openjd_template(const ScriptOptions& o) {
     return fmt::format(
-        "# Untested: no render farm was at hand. Checked against the text of the specification only.\n"
+        "# Not run on a render farm: none was at hand. The rules are those of the specification and of openjd-model.\n"
         "specificationVersion: jobtemplate-2023-09\n"
         "name: {}\n"
         "parameterDefinitions:\n"
@@ -72,7 +72,7 @@ std::string openjd_template(const ScriptOptions& o) {
         "    type: PATH\n"
         "    objectType: DIRECTORY\n"
         "    dataFlow: INOUT\n"
-        "    default: {}\n"
+        "    default: .\n"  // this file's folder: an absolute default is refused
         "  - name: Tuft\n"
         "    type: STRING\n"
         "    default: tuft\n"
@@ -96,7 +96,7 @@ std::string openjd_template(const ScriptOptions& o) {
         "        onRun:\n"
         "          command: \"{{{{Param.Tuft}}}}\"\n"
         "          args: [\"variants\", \"{{{{Param.Jobs}}}}\", \"--gather\"]\n",
-        yaml_text("tuft variants: " + o.name), yaml_text(o.folder.string()), o.tasks - 1);
+        yaml_text("tuft variants: " + o.name), o.tasks - 1);
 }
 
 void write_scripts(const ScriptOptions& o) {

@@ -23,7 +23,8 @@ std::string slurm_script(const ScriptOptions& options);
 /// All tasks by GNU parallel on this machine, or with --sshloginfile on others.
 std::string parallel_script(const ScriptOptions& options);
 
-/// A job template of the Open Job Description 2023-09, for render farms.
+/// A job template of the Open Job Description 2023-09, for render farms. Its folder of tasks is the template's own:
+/// openjd-model refuses absolute defaults.
 std::string openjd_template(const ScriptOptions& options);
 
 /// Writes slurm.sh, parallel.sh and openjd.yaml into the folder.

@@ -186,5 +186,13 @@ TEST_F(JobsFolder, ScriptsCoverEveryTaskOnce) {
     }
 }
 
+// openjd-model: "The default value of PATH parameter ... is an absolute path. Default paths must be relative".
+TEST_F(JobsFolder, AJobTemplateNamesItsOwnFolder) {
+    const std::string text = openjd_template({.folder = "/a b", .program = "/bin/tuft", .name = "x", .tasks = 7});
+    EXPECT_THAT(text, HasSubstr("type: PATH\n    objectType: DIRECTORY\n    dataFlow: INOUT\n    default: .\n"));
+    EXPECT_THAT(text, testing::Not(HasSubstr("/a b")));
+    EXPECT_THAT(text, HasSubstr("range: \"0-6\""));
+}
+
 }  // namespace
 }  // namespace tuft::variants
