@@ -88,6 +88,7 @@ int test_device(const DeviceWork& a) {
                {"trials", trials.count},
                {"simulated_s", static_cast<double>(worst.periods) * haptic::kPeriod},
                {"contacts", worst.contacts},
+               {"most_evaluations", worst.most_evaluations},
                {"unconverged_percent", percent(worst.unconverged, worst.solves)},
                {"solve_us",
                 {{"p50", 1e6 * quantile(solves, 0.5)},

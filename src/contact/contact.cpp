@@ -147,8 +147,10 @@ brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, Recycled<Con
     if (w.options.max_refreshes <= 0) return brush::step(tuft, w.pose, planes, dt, walls);
 
     thread_local brush::TuftBend before, solved;  // keep their memory
+    thread_local brush::StepStart start;
     before = tuft;
-    brush::TuftState state = brush::step(tuft, w.pose, planes, dt, walls);
+    start.known = start.in_parts = false;
+    brush::TuftState state = brush::step(tuft, w.pose, planes, dt, walls, &start);
     for (int pass = 0; pass < w.options.max_refreshes && state.touching; ++pass) {
         const Recycled<Vec3> now = brush::predicted_nodes(tuft, w.pose);
         if (tuft.split != was_split && now.size() < nodes.size()) break;
@@ -173,12 +175,14 @@ brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, Recycled<Con
         std::swap(static_cast<brush::TuftBend&>(tuft), solved);
         static_cast<brush::TuftBend&>(tuft) = before;
         brush::TuftState former = std::move(state);
-        state = brush::step(tuft, w.pose, planes, dt, walls);
+        state = brush::step(tuft, w.pose, planes, dt, walls, &start);
         state.iterations += former.iterations;
+        state.work += former.work;
         // Between two faces of a rim the planes at the new places may leave no rest: the solve ends anywhere, with a
         // force of many newtons. The planes before are off by less than a tuft moves in a sample.
         if (!state.converged && former.converged) {
             former.iterations = state.iterations;
+            former.work = state.work;
             planes = std::move(fresh);
             std::swap(static_cast<brush::TuftBend&>(tuft), solved);
             state = std::move(former);

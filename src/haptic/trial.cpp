@@ -64,6 +64,8 @@ TrialReport run_trial(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface
             answered = true;
             ++report.solves;
             report.unconverged += !answer.converged;
+            const brush::SolverWork& work = solver.state().work;
+            report.most_evaluations = std::max(report.most_evaluations, work.evaluations + work.values);
             report.seconds.push_back(static_cast<float>(answer.seconds));
             if (options.record) report.roots.push_back({pose, answer.touching});
         }
@@ -128,6 +130,7 @@ void merge(TrialReport& into, const TrialReport& from) {
     into.periods += from.periods;
     into.solves += from.solves;
     into.unconverged += from.unconverged;
+    into.most_evaluations = std::max(into.most_evaluations, from.most_evaluations);
     into.limited += from.limited;
     into.contacts += from.contacts;
     into.seconds.insert(into.seconds.end(), from.seconds.begin(), from.seconds.end());

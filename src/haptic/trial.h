@@ -61,6 +61,8 @@ struct TrialReport {
     double largest_force = 0;      ///< N
     double deepest = 0;            ///< m, of the arm behind the root while it is held on the surface
     std::size_t periods = 0, solves = 0, unconverged = 0, limited = 0, contacts = 0;
+    /// Evaluations of the potential in one solve, of its values and with derivatives, at most.
+    int most_evaluations = 0;
     std::vector<float> seconds;  ///< of each solve
     std::uint64_t hash = 0;      ///< of all forces
     std::vector<Vec3> forces;    ///< N, on the hand, one per period

@@ -61,6 +61,23 @@ TEST(Wedge, SlopeTurnsNoFasterThanTheRoundingAllows) {
     }
 }
 
+TEST(Wedge, ALineOverAnEdgeHasTheDistancesOfItsPoints) {
+    Random random(11);
+    for (int i = 0; i < 2000; ++i) {
+        const RoundedEdge e = round_edge(edge(random.uniform(0.2, 1.5)), kRound);
+        const Vec3 x{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+        const Vec3 d{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+        const double s = random.uniform(-1, 1);
+        const LineDistance on_line = LineOverEdge(e, x, d).at(s);
+        const Distance at_point = edge_distance(e, x + s * d);
+        // The same sums in another order, over sin² of the least angle, 0.02.
+        EXPECT_NEAR(on_line.z, at_point.z, 1e-12);
+        EXPECT_NEAR(on_line.slope, glm::dot(at_point.slope, d), 1e-11);
+        const double across = glm::dot(at_point.across, d);
+        EXPECT_NEAR(on_line.bend, at_point.bend * across * across, 1e-9 * (1 + at_point.bend));
+    }
+}
+
 TEST(Wedge, NoEdgeLosesMoreThanARightAngledOne) {
     for (const double half : {0.3, 0.25 * M_PI, 1.0, 1.3, 1.5, 1.57}) {
         const double lost = edge_distance(edge(half), kRound, Vec3{0}).z;

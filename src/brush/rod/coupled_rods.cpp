@@ -187,11 +187,25 @@ CoupledResult solve_coupled(std::span<const CoupledRod> rods, std::span<const Co
     out.rods.resize(rods.size());
     const Law& limits = *rods.front().law;
     start(w, system);
-    int iterations = 0, passes = 1;
+    int iterations = 0, passes = 1, stalls = 0;
+    out.work.evaluations = 4;  // of `start`
     bool converged = false;
-    for (;; ++passes) {
-        const NewtonResult r = minimise(system, limits.max_iterations - iterations);
+    for (Solver& s : w.solvers) s.expect_forces();
+    const auto minimise_pass = [&](double tolerance) {
+        const NewtonResult r =
+            minimise(system, {limits.max_iterations - iterations, stalls_left(limits, stalls), tolerance});
+        stalls += r.stalls;
         iterations += r.iterations;
+        out.work += {.iterations = r.iterations, .evaluations = r.evaluations, .values = r.values};
+        return r;
+    };
+    for (;; ++passes) {
+        double rough = std::numeric_limits<double>::infinity();
+        for (const Solver& s : w.solvers) rough = std::min(rough, s.pass_tolerance());
+        NewtonResult r = minimise_pass(rough);
+        const bool settles = std::all_of(w.solvers.begin(), w.solvers.end(),
+                                         [](const Solver& s) { return s.fine.empty() || s.forces_settled(); });
+        if (r.converged && rough > limits.tolerance && settles) r.converged = minimise_pass(0).converged;
         bool at_rest = r.converged;
         for (Solver& s : w.solvers) {
             if (!s.fine.empty() && !s.take_normal_forces(passes)) at_rest = false;
@@ -200,13 +214,18 @@ CoupledResult solve_coupled(std::span<const CoupledRod> rods, std::span<const Co
         relax_pairs(w, passes);
         system.freeze_pairs();
         converged = at_rest && settled(before, nodes_of(w.pairs), limits.pass_tolerance);
-        if (converged || passes >= limits.max_passes || iterations >= limits.max_iterations) break;
+        if (converged || passes >= limits.max_passes || iterations >= limits.max_iterations ||
+            stalls_left(limits, stalls) <= 0)
+            break;
         for (Solver& s : w.solvers) {
             s.ws.ahead = s.ws.at.node;
             s.freeze_friction(s.ws.ahead, s.shape.tangent);
         }
         system.evaluate_all();
+        ++out.work.evaluations;
     }
+    out.work.solves = 1;
+    out.work.passes = passes;
     for (const FrozenPair& f : w.pairs) out.pairs.push_back(finish_pair(f, law, w, out));
     for (std::size_t k = 0; k < rods.size(); ++k) {
         Result& r = out.rods[k];

@@ -98,6 +98,7 @@ struct PairState {
 struct CoupledResult {
     Recycled<Result> rods;  ///< forces and energies of each; `converged`, iterations and passes of all together
     Recycled<PairState> pairs;
+    SolverWork work;         ///< an evaluation of all rods counts once
     double energy = 0;       ///< stored in the coupling, W of unbroken film negative
     double dissipation = 0;  ///< by hair that slides along hair
 };

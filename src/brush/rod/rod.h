@@ -4,6 +4,7 @@
 #include <span>
 
 #include "brush/rod/profile.h"
+#include "brush/rod/solver_work.h"
 #include "core/geometry/types.h"
 #include "core/system/recycled.h"
 
@@ -147,6 +148,12 @@ struct Load {
     Vec3 toward{1, 0, 0};
 };
 
+/// Where a solve starts in place of the rod moved with its clamp, if Π is lower there.
+struct Guess {
+    Recycled<Vec3> tangent;  ///< [n] unit, world
+    Recycled<double> force;  ///< of the contact points, normal force
+};
+
 /// What acts on a rod in one solve, in units of L and B0. The spans are read during the call only.
 struct SolveInput {
     std::span<const Obstacle> obstacles;  ///< [n+1] contact plane of each node; empty: no contact
@@ -155,6 +162,7 @@ struct SolveInput {
     /// Empty: none. They need obstacles, and have the same order in every solve of one `Memory`. A wall out of reach
     /// changes no bit.
     std::span<const Wall> walls;
+    const Guess* guess = nullptr;  ///< null: extrapolated from the last solve
 };
 
 /// Plastic state of a joint: parallel elastic-plastic elements in the frame of its inner segment.
@@ -190,6 +198,7 @@ struct Memory {
 struct Result {
     bool converged = false;
     int iterations = 0, passes = 0;
+    SolverWork work;
     double bend_energy = 0;  ///< stored in the joints
     /// Stored in indented and sticking contacts and in the wet film (negative while it attracts).
     double contact_energy = 0;

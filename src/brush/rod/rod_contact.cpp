@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brush/rod/rod_edge.h"
 #include "brush/rod/rod_energy.h"
 #include "brush/rod/rod_law.h"
 #include "brush/rod/rod_points.h"
@@ -86,7 +87,7 @@ EndOn end_on(const Law& law, double weight, double radius, double depth, double 
 Distance distance_of(const Obstacle& o, const Crease& crease, double edge, const Vec3& x) {
     Distance out{glm::dot(x - o.origin, o.normal), o.normal};
     if (crease.share <= 0) return out;
-    const Distance d = crease.convex ? edge_distance(crease.wedge, edge, x) : corner_distance(crease.wedge, edge, x);
+    const Distance d = crease.convex ? edge_distance(crease.edge, x) : corner_distance(crease.edge.wedge, edge, x);
     out.z += crease.share * (d.z - out.z);
     out.slope += crease.share * (d.slope - out.slope);
     out.bend = crease.share * d.bend;
@@ -117,184 +118,26 @@ bool all_clear(const Frozen& frozen, int k, const Evaluation& at) {
     return true;
 }
 
-namespace {
-
-/// Adds curvature · f(k, l) to the second derivatives over nodes k and l of a stencil.
-template <class F>
-void add_curvature(const Stencil& at, const Sym3& curvature, Evaluation& out, const F& f) {
-    for (int k = 0; k < at.count; ++k) out.curvature[at.first + k] += f(k, k) * curvature;
-    for (int k = 0; k + 1 < at.count; ++k) out.coupling[at.first + k] += f(k, k + 1) * curvature;
-    if (at.count > 2) out.across[at.first] += f(0, 2) * curvature;
-}
-
-void add_slope(const Stencil& at, const double* w, const Vec3& slope, Evaluation& out) {
-    for (int k = 0; k < at.count; ++k) out.slope[at.first + k] += w[k] * slope;
-}
-
-/// Part of a contact point's length of hair over a crease.
-struct Piece {
-    Stencil at;
-    double weight = 0, radius = 0, compliance = 0;
-};
-
-/// A piece of hair at a crease.
-struct HairAtCrease {
-    const Law& law;
-    const Crease& crease;
-    const Obstacle& obstacle;
-    const Piece& piece;
-    Vec3 x{0};        ///< where it is
-    Vec3 inwards{0};  ///< unit, its direction to the root
-};
-
-/// Hair over a crease, shortened along itself by `s`.
-struct Shortened {
-    double s = 0;
-    Vec3 x{0};
-    Distance at_surface;
-    NormalForce push, pull;  // of the contact and of the film
-    double miss = 0;         // s / compliance less the force along the hair
-};
-
-Shortened shortened_by(const HairAtCrease& hair, double s) {
-    const auto& [law, crease, obstacle, piece, x, inwards] = hair;
-    Shortened out{.s = s, .x = x + s * inwards};
-    out.at_surface = distance_of(obstacle, crease, law.edge, out.x);
-    const double depth = piece.radius - out.at_surface.z;
-    out.push = normal_force(law, piece.weight, piece.radius, depth, 0);
-    out.pull = adhesion(law, piece.weight, -depth);
-    if (piece.compliance > 0) {
-        const double force = out.push.force - out.pull.force;
-        out.miss = s / piece.compliance - force * glm::dot(inwards, out.at_surface.slope);
-    }
-    return out;
-}
-
-/// The largest s at which s²/(2 compliance) + contact(r - z(x + s i)) is stationary: where the hair, coming
-/// from its root, meets the surface. Bracketed from outside, then false position (Illinois).
-Shortened shorten_to_surface(const HairAtCrease& hair) {
-    const auto at = [&](double s) { return shortened_by(hair, s); };
-    Shortened low = at(0);
-    if (hair.piece.compliance <= 0 || low.push.force <= 0) return low;
-    constexpr int kSteps = 12;
-    const double step = 3 * hair.law.end_compliance / kSteps;
-    Shortened high = at(kSteps * step);
-    if (high.miss <= 0) return high;
-    // A step brings hair no nearer to the surface than it is long: as far as neither contact nor film can begin, no
-    // sign changes.
-    const double off = high.at_surface.z - hair.piece.radius - hair.law.adhesion_range - 1e-9;
-    const int clear = std::clamp(static_cast<int>(off / step), 0, kSteps - 1);
-    if (clear > 0) high = at((kSteps - clear) * step);
-    for (int k = kSteps - clear; k-- > 0;) {
-        low = at(k * step);
-        if (low.miss <= 0) break;
-        high = low;
-    }
-    if (low.miss >= 0) return low;
-    double at_low = low.miss, at_high = high.miss;
-    Shortened mid = low;
-    for (int i = 0; i < 60 && high.s - low.s > 1e-15; ++i) {
-        mid = at((low.s * at_high - high.s * at_low) / (at_high - at_low));
-        if (std::abs(mid.miss) < 1e-12 * (1 + mid.push.force)) break;
-        if (mid.miss > 0) {
-            high = mid;
-            at_high = mid.miss;
-            at_low *= 0.5;
-        } else {
-            low = mid;
-            at_low = mid.miss;
-            at_high *= 0.5;
-        }
-    }
-    return mid;
-}
-
-/// Adds the potential of a piece over an edge where it stands. With i the direction inwards, y = x + s i
-/// and ψ(y) the contact's: E = s²/(2 compliance) + ψ, E_x = ψ', E_i = s ψ'.
-double add_piece(int p, const Piece& piece, const Shortened& st, Evaluation& out) {
-    const Stencil& at = piece.at;
-    const Vec3 inwards = at.inwards(out.node);
-    const double force = st.push.force - st.pull.force;
-    if (force == 0) return 0;
-    const Vec3& n = st.at_surface.slope;
-    const Vec3 slope = -force * n;
-    Sym3 xx = (st.push.stiffness + st.pull.stiffness) * outer(n);
-    xx += -force * st.at_surface.bend * outer(st.at_surface.across);
-    out.normal[p] += st.push.force;
-    double energy = st.push.energy + st.pull.energy;
-    if (st.s > 0) {
-        energy += st.s * st.s / (2 * piece.compliance);
-        const Vec3 ci = xx * inwards, b = slope + st.s * ci;
-        const double total = std::max(1 / piece.compliance + glm::dot(inwards, ci), 0.01 / piece.compliance);
-        const Sym3 ii = st.s * st.s * xx + -1 / total * outer(b);
-        const Sym3 mixed = 2 * st.s * xx + -2 / total * symmetric(ci, b);
-        xx += -1 / total * outer(ci);
-        add_slope(at, at.d, st.s * slope, out);
-        add_curvature(at, mixed, out, [&](int k, int l) { return 0.5 * (at.w[k] * at.d[l] + at.d[k] * at.w[l]); });
-        add_curvature(at, ii, out, [&](int k, int l) { return at.d[k] * at.d[l]; });
-    }
-    add_slope(at, at.w, slope, out);
-    add_curvature(at, xx, out, [&](int k, int l) { return at.w[k] * at.w[l]; });
-    return energy;
-}
-
-bool over_edge(const Frozen& frozen, int p) {
-    return frozen.crease[p].share > 0 && frozen.crease[p].convex && !frozen.law->hard;
-}
-
-/// An edge presses on little more than a point of the hair, which passes from contact point to
-/// contact point as the hair moves over it: there the length of each is taken in pieces.
-constexpr int kPieces = 4;
-
-/// Calls f(piece, its hair shortened to the surface) for the pieces of contact point p.
-template <class F>
-void for_clusters(const Frozen& frozen, int p, const Recycled<Vec3>& node, const F& f) {
-    const int per = frozen.law->points_per_segment, n = frozen.rod->segments();
-    for (int k = 0; k < kPieces; ++k) {
-        const double offset = (k + 0.5) / kPieces - 0.5;
-        const int first = offset < 0 ? p - 1 : p;
-        if (first < 0 || first >= per * n) continue;
-        Piece piece;
-        const int j = first / per;
-        piece.at = stencil_at(*frozen.rod, rounded(*frozen.law), j, (p + offset) / per - j);
-        piece.weight = frozen.rod->length[j] / (per * kPieces);
-        const Obstacle &o = frozen.obstacles[p], &other = frozen.obstacles[offset < 0 ? p - 1 : p + 1];
-        piece.radius = o.radius + std::abs(offset) * (other.radius - o.radius);
-        piece.compliance = frozen.compliance[p] * frozen.weight[p] / piece.weight;
-        f(piece,
-          shorten_to_surface({*frozen.law, frozen.crease[p], o, piece, piece.at.at(node), piece.at.inwards(node)}));
-    }
-}
-
-}  // namespace
-
-double add_contact(const Frozen& frozen, int p, Evaluation& out) {
+double add_contact(const Frozen& frozen, int p, bool derivatives, Evaluation& out) {
     const Law& law = *frozen.law;
-    const Obstacle& o = frozen.obstacles[p];
     const Stencil& at = frozen.stencil[p];
     const Vec3 x = at.at(out.node);
-    const Distance at_surface = distance_of(o, frozen.crease[p], law.edge, x);
-    const double depth = o.radius - at_surface.z;
-    const double length = frozen.rod->length[frozen.place[p].node] / law.points_per_segment;
-    const double reach = law.adhesion_range + (over_edge(frozen, p) ? length : 0);
-    if (depth <= -reach && !law.hard) return 0;
-    const Vec3& n = at_surface.slope;
-    const auto add = [&](const Vec3& slope, const Sym3& curvature) {
-        add_slope(at, at.w, slope, out);
-        add_curvature(at, curvature, out, [&](int k, int l) { return at.w[k] * at.w[l]; });
-    };
+    Vec3 slope{0};
+    Sym3 curvature;
+    double energy = 0;
     if (over_edge(frozen, p)) {
-        double energy = 0;
-        for_clusters(frozen, p, out.node, [&](const Piece& piece, const Shortened& standing) {
-            energy += add_piece(p, piece, standing, out);
-        });
+        if (is_clear_of_edge(frozen, p, x)) return 0;
+        energy = add_hair_at_edge(frozen, p, derivatives, out);
         out.contact += energy;
-        Vec3 slope{0};
-        Sym3 curvature;
         add_friction(frozen.friction[p], frozen.friction[p].normal, x, energy, slope, curvature);
-        add(slope, curvature);
+        if (derivatives) add_potential(at, slope, curvature, out);
         return energy;
     }
+    const Obstacle& o = frozen.obstacles[p];
+    const Distance at_surface = distance_of(o, frozen.crease[p], law.edge, x);
+    const double depth = o.radius - at_surface.z;
+    if (depth <= -law.adhesion_range && !law.hard) return 0;
+    const Vec3& n = at_surface.slope;
     const double c = glm::dot(at.inwards(out.node), n);
     EndOn f;
     if (depth > 0 && c > 0 && frozen.compliance[p] > 0 && frozen.crease[p].share <= 0) {
@@ -304,16 +147,17 @@ double add_contact(const Frozen& frozen, int p, Evaluation& out) {
         f = {.energy = whole.energy, .d = whole.force, .dd = whole.stiffness};
     }
     const NormalForce pull = adhesion(law, frozen.weight[p], -depth);
-    double energy = f.energy + pull.energy;
+    energy = f.energy + pull.energy;
     out.contact += energy;
-    out.normal[p] = f.d;
-    Vec3 slope = (pull.force - f.d) * n;
-    Sym3 curvature = (f.dd + pull.stiffness) * outer(n);
+    slope = (pull.force - f.d) * n;
+    curvature = (f.dd + pull.stiffness) * outer(n);
     if (at_surface.bend != 0) {
         curvature += (pull.force - f.d) * at_surface.bend * outer(at_surface.across);
     }
     add_friction(frozen.friction[p], frozen.friction[p].normal, x, energy, slope, curvature);
-    add(slope, curvature);
+    if (!derivatives) return energy;
+    out.normal[p] = f.d;
+    add_potential(at, slope, curvature, out);
     if (f.c != 0) {
         add_slope(at, at.d, f.c * n, out);
         add_curvature(at, outer(n), out, [&](int k, int l) {
@@ -331,17 +175,7 @@ Obstacle met_by(const Frozen& frozen, int p, const Recycled<Vec3>& node) {
     const double size = glm::length(d.slope);
     const Vec3 n = size > 1e-6 ? d.slope / size : o.normal;
     const Obstacle here{x - d.z * n, n, o.radius};
-    if (!over_edge(frozen, p)) return here;
-    // The mean over its pieces, by their forces.
-    double total = 0;
-    Vec3 normal{0}, origin{0};
-    for_clusters(frozen, p, node, [&](const Piece&, const Shortened& st) {
-        total += st.push.force;
-        normal += st.push.force * st.at_surface.slope;
-        origin += st.push.force * (st.x - st.at_surface.z * st.at_surface.slope);
-    });
-    const double mean = glm::length(normal);
-    return mean > 1e-6 * total && total > 0 ? Obstacle{origin / total, normal / mean, o.radius} : here;
+    return over_edge(frozen, p) ? mean_plane_at_edge(frozen, p, node, here) : here;
 }
 
 }  // namespace tuft::brush::rod

@@ -247,11 +247,11 @@ double add_contacts(const Frozen& frozen, bool derivatives, Evaluation& out) {
             value += add_patch(frozen, k, derivatives, out);
         } else if (!all_clear(frozen, k, out)) {
             const PointRange range = points_of(k, per, frozen.rod->segments());
-            for (int p = range.begin; p < range.end; ++p) value += add_contact(frozen, p, out);
+            for (int p = range.begin; p < range.end; ++p) value += add_contact(frozen, p, derivatives, out);
         }
     }
     for (std::size_t p = frozen.walls_from; p < frozen.obstacles.size(); ++p) {
-        value += add_contact(frozen, static_cast<int>(p), out);
+        value += add_contact(frozen, static_cast<int>(p), derivatives, out);
     }
     return value;
 }

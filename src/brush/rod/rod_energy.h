@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 
 #include "brush/rod/rod.h"
 #include "brush/rod/sym3.h"
@@ -53,11 +54,21 @@ inline PointRange points_of(int k, int per_segment, int segments) {
 struct Crease {
     double share = 0;  ///< 0: no crease, one plane; 1: a sharp crease
     bool convex = true;
-    Wedge wedge;
+    RoundedEdge edge;  ///< a concave crease uses its planes only
 };
 
-/// Returns the distance of x from the plane of `o`, or from both planes of a crease, rounded by `edge`.
+/// Returns the distance of x from the plane of `o`, or from both planes of a crease, rounded by `edge` where it is
+/// concave.
 Distance distance_of(const Obstacle& o, const Crease& crease, double edge, const Vec3& x);
+
+/// An edge presses on little more than a point of the hair, which passes from contact point to contact point as the
+/// hair moves over it: there the length of each is taken in pieces.
+inline constexpr int kPieces = 4;
+struct HairPiece {
+    Stencil at;
+    double weight = 0;  ///< its length; 0: beyond an end of the hair
+    double radius = 0, compliance = 0;
+};
 
 struct Frozen;
 
@@ -77,8 +88,9 @@ void turn_patches(Frozen& frozen);
 /// nothing else.
 double add_patch(const Frozen& frozen, int k, bool derivatives, Evaluation& out);
 
-/// Adds contact point p to the slopes and curvatures of its nodes and returns its potential.
-double add_contact(const Frozen& frozen, int p, Evaluation& out);
+/// Adds contact point p to the slopes and curvatures of its nodes and returns its potential. Without `derivatives` it
+/// changes nothing.
+double add_contact(const Frozen& frozen, int p, bool derivatives, Evaluation& out);
 
 /// Friction of one contact point, constant during one Newton solve.
 struct Friction {
@@ -110,15 +122,16 @@ struct PatchPoint {
 struct Frozen {
     const Rod* rod = nullptr;
     const Recycled<JointMemory>* joint = nullptr;
-    std::span<const Obstacle> obstacles;  ///< of the contact points, or empty
-    Recycled<PointPlace> place;           ///< of the contact points
-    Recycled<Stencil> stencil;            ///< of the contact points
-    Recycled<double> placed_length;       ///< segment lengths for which place and stencil were computed,
-    int placed_per = 0;                   ///< points per segment,
-    bool placed_round = false;            ///< and whether rounded
-    std::size_t walls_from = 0;           ///< index of the first contact point of a wall
-    Recycled<Crease> crease;              ///< of the contact points
-    Recycled<double> weight;              ///< of the contact points, tributary lengths
+    std::span<const Obstacle> obstacles;             ///< of the contact points, or empty
+    Recycled<PointPlace> place;                      ///< of the contact points
+    Recycled<Stencil> stencil;                       ///< of the contact points
+    Recycled<double> placed_length;                  ///< segment lengths for which place and stencil were computed,
+    int placed_per = 0;                              ///< points per segment,
+    bool placed_round = false;                       ///< and whether rounded
+    std::size_t walls_from = 0;                      ///< index of the first contact point of a wall
+    Recycled<Crease> crease;                         ///< of the contact points
+    Recycled<std::array<HairPiece, kPieces>> piece;  ///< of the contact points over a convex crease
+    Recycled<double> weight;                         ///< of the contact points, tributary lengths
     const Law* law = nullptr;
     Load load;
     Clamp clamp;

@@ -71,9 +71,9 @@ struct RodSystem {
 
 }  // namespace
 
-NewtonResult newton(const Frozen& frozen, Shape& shape, Workspace& ws, int limit) {
+NewtonResult newton(const Frozen& frozen, Shape& shape, Workspace& ws, const NewtonLimits& limits) {
     RodSystem system{frozen, shape, ws};
-    return minimise(system, limit);
+    return minimise(system, limits);
 }
 
 }  // namespace tuft::brush::rod

@@ -68,7 +68,7 @@ struct PointBuilder {
         const int first = straight >= turned ? 0 : 1;
         towards(first, b.origin, b.normal);
         if (both) towards(1 - first, b.beyond_origin, b.beyond_normal);
-        frozen.crease[p] = {1, true, w};
+        frozen.crease[p] = {1, true, round_edge(w, law.edge)};
         return true;
     }
 
@@ -105,7 +105,7 @@ struct PointBuilder {
         c.share = share;
         // Closest points that coincide are of an edge.
         c.convex = glm::dot(b.origin - a.origin, a.normal - b.normal) < 1e-9;
-        c.wedge = {{a.origin, b.origin}, {a.normal, b.normal}};
+        c.edge = round_edge({{a.origin, b.origin}, {a.normal, b.normal}}, law.edge);
     }
 
     /// Places, planes, radii and tributary lengths of the contact points.
@@ -187,6 +187,31 @@ struct PointBuilder {
         }
     }
 
+    /// Pieces of the points that lie over a convex crease.
+    void compute_pieces() {
+        if (law.hard) return;
+        frozen.piece.resize(fine.size());
+        for (std::size_t p = 0; p < fine.size(); ++p) {
+            if (frozen.crease[p].share > 0 && frozen.crease[p].convex) compute_pieces(static_cast<int>(p));
+        }
+    }
+
+    void compute_pieces(int p) {
+        const int per = law.points_per_segment;
+        for (int k = 0; k < kPieces; ++k) {
+            HairPiece& piece = frozen.piece[p][k];
+            const double offset = (k + 0.5) / kPieces - 0.5;
+            const int first = offset < 0 ? p - 1 : p, other = offset < 0 ? p - 1 : p + 1;
+            piece.weight = 0;
+            if (first < 0 || first >= per * n()) continue;
+            const int j = first / per;
+            piece.at = stencil_at(rod, rounded(law), j, (p + offset) / per - j);
+            piece.weight = rod.length[j] / (per * kPieces);
+            piece.radius = fine[p].radius + std::abs(offset) * (fine[other].radius - fine[p].radius);
+            piece.compliance = frozen.compliance[p] * frozen.weight[p] / piece.weight;
+        }
+    }
+
     /// Points of their own on the nodes.
     void add_walls(std::span<const Wall> walls) {
         if (fine.empty() || law.hard) return;
@@ -241,6 +266,7 @@ void compute_points(std::span<const Obstacle> obstacles, const Recycled<Vec3>& n
     PointBuilder builder{*frozen.rod, *frozen.law, obstacles, node, frozen, fine};
     builder.compute_points();
     builder.compute_compliance();
+    builder.compute_pieces();
     builder.add_walls(walls);
 }
 

@@ -10,7 +10,7 @@ Result solve(const Rod& rod, Memory& memory, const Clamp& clamp, const SolveInpu
     move_with_clamp(memory, clamp);
     Solver solver{rod, memory, input.obstacles, input.walls, input.law, buffers, moved};
     solver.begin(input.load, buffers.before);
-    return solver.run();
+    return solver.run(input.guess);
 }
 
 Probe probe_energy(const Rod& rod, const Memory& memory, const SolveInput& input, std::span<const double> x,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace tuft::brush::rod {
@@ -13,6 +14,8 @@ double clamp_distance(const Clamp& a, const Clamp& b) {
 namespace {
 
 constexpr double kFirstTouch = 0.1;  ///< B0/L²: guess of a first contact's force
+constexpr double kForcing = 0.01;    ///< residual of a pass over the change of the forces that its friction comes from
+constexpr double kRoughest = 0.1;    ///< of the forces: a greater change counts as this
 constexpr double kFaint = 0.02;      ///< B0/L²: normal force below which relative accuracy is no aim
 constexpr double kStands =
     0.9;  ///< cosine of the bend, 26°, up to which hair stands and may yet buckle or fall to any side
@@ -175,10 +178,25 @@ void Solver::freeze_extrapolated() {
         freeze_friction(ws.ahead, ws.next.tangent);
 }
 
-void Solver::start() {
-    if (extrapolate_shape()) {
-        freeze_extrapolated();
+void Solver::take_guess(const Guess& guess) {
+    ws.next.tangent = guess.tangent;
+    ws.ahead = memory.node;
+    for (int j = 0; j < n(); ++j) ws.ahead[j + 1] = ws.ahead[j] + rod.length[j] * guess.tangent[j];
+    transport_sides(memory.clamp, ws.next.tangent, ws.next.side);
+    for (std::size_t p = 1; p < std::min(normal.size(), guess.force.size()); ++p) normal[p] = guess.force[p];
+}
+
+void Solver::start(const Guess* guess) {
+    const bool guessed = guess && guess->tangent.size() == shape.tangent.size();
+    if (guessed) take_guess(*guess);
+    if (guessed || extrapolate_shape()) {
+        if (guessed)
+            freeze_friction(ws.ahead, ws.next.tangent);
+        else
+            freeze_extrapolated();
         evaluate(frozen, ws.next, ws.trial);
+        ++work.evaluations;
+        ++work.values;
         if (ws.trial.value < value_of(frozen, shape, ws.at)) {
             std::swap(shape, ws.next);
             std::swap(ws.at, ws.trial);
@@ -187,25 +205,39 @@ void Solver::start() {
     }
     freeze_friction(memory.node, shape.tangent);
     evaluate(frozen, shape, ws.at);
+    ++work.evaluations;
+}
+
+double Solver::pass_tolerance() const {
+    return law.hard || stands() ? 0 : kForcing * std::min(force_change, kRoughest * force_sum);
+}
+
+bool Solver::forces_settled() const {
+    double change = 0, sum = 0;
+    for (std::size_t p = 1; p < fine.size(); ++p) {
+        change += std::abs(ws.at.normal[p] - (law.hard ? frozen.multiplier[p] : normal[p]));
+        sum += ws.at.normal[p];
+    }
+    return (law.friction <= 0 && !law.hard) || change <= law.pass_tolerance * (sum + kFaint);
 }
 
 bool Solver::take_normal_forces(int pass) {
-    double change = 0, sum = 0;
+    const bool settled = forces_settled();
+    force_change = force_sum = 0;
     forces_changed = false;
     for (std::size_t p = 1; p < fine.size(); ++p) {
         const double fresh = ws.at.normal[p];
         forces_changed = forces_changed || (law.hard && frozen.multiplier[p] != fresh) || (fresh > 0 && !anchored[p]);
-        change += std::abs(fresh - (law.hard ? frozen.multiplier[p] : normal[p]));
-        sum += fresh;
+        force_change += std::abs(fresh - normal[p]);
+        force_sum += fresh;
         if (law.hard) frozen.multiplier[p] = fresh;
         if (fresh > 0 && !anchored[p]) {
             anchor[p] = point(ws.at.node, p);
             anchored[p] = 1;
         }
     }
-    if (law.friction <= 0 && !law.hard) return true;
-    relax(pass);
-    return change <= law.pass_tolerance * (sum + kFaint);
+    if (law.friction > 0 || law.hard) relax(pass);
+    return settled;
 }
 
 void Solver::relax(int pass) {
@@ -229,23 +261,42 @@ void Solver::relax(int pass) {
     }
 }
 
-Result Solver::run() {
+void Solver::expect_forces() {
+    force_sum = std::accumulate(normal.begin(), normal.end(), 0.0);
+    force_change = law.pass_tolerance * force_sum;
+}
+
+NewtonResult Solver::minimise_pass(double tolerance, Result& done) {
+    const NewtonResult r =
+        newton(frozen, shape, ws, {law.max_iterations - done.iterations, stalls_left(law, stalls), tolerance});
+    stalls += r.stalls;
+    done.iterations += r.iterations;
+    work += {.iterations = r.iterations, .evaluations = r.evaluations, .values = r.values};
+    return r;
+}
+
+Result Solver::run(const Guess* guess) {
     Result out;
-    start();
+    start(guess);
+    expect_forces();
     for (out.passes = 1;; ++out.passes) {
-        const NewtonResult r = newton(frozen, shape, ws, law.max_iterations - out.iterations);
-        out.iterations += r.iterations;
+        const double rough = pass_tolerance();
+        NewtonResult r = minimise_pass(rough, out);
+        if (r.converged && rough > law.tolerance && forces_settled()) r.converged = minimise_pass(0, out).converged;
         const bool settled = fine.empty() || take_normal_forces(out.passes);
         out.converged = r.converged && settled;
         // At a kink of Π that no step leaves, a pass with the same friction is the pass before again.
         const bool stuck = out.passes > 1 && !r.converged && !r.moved && !forces_changed;
-        if (out.converged || stuck || out.passes >= law.max_passes || out.iterations >= law.max_iterations) {
-            break;
-        }
+        const bool spent = out.iterations >= law.max_iterations || stalls_left(law, stalls) <= 0;
+        if (out.converged || stuck || spent || out.passes >= law.max_passes) break;
         ws.ahead = ws.at.node;
         freeze_friction(ws.ahead, shape.tangent);
         evaluate(frozen, shape, ws.at);
+        ++work.evaluations;
     }
+    out.work = work;
+    out.work.solves = 1;
+    out.work.passes = out.passes;
     finish(out);
     return out;
 }

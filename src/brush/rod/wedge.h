@@ -26,6 +26,35 @@ struct Wedge {
 /// removes at most 0.41 ρ, as at an edge of 90°.
 Distance edge_distance(const Wedge& wedge, double rounding, const Vec3& x);
 
+/// A convex edge with what all distances from it share.
+struct RoundedEdge {
+    Wedge wedge;
+    double rounding = 0;   ///< ρ, as it acts at this edge
+    double c = 1;          ///< cosine between both normals
+    double per_apart = 0;  ///< 1/(1 − c²); 0 where both planes are one
+    Vec3 ridge{0};         ///< unit, along the edge
+};
+RoundedEdge round_edge(const Wedge& wedge, double rounding);
+Distance edge_distance(const RoundedEdge& edge, const Vec3& x);
+
+/// Distance of a line x + s d from an edge, as a function of s.
+struct LineDistance {
+    double z = 0, slope = 0, bend = 0;  ///< and its first and second derivative
+};
+
+/// A line over a rounded edge: its heights over both planes are linear, so that a distance costs a root at most.
+class LineOverEdge {
+  public:
+    /// `direction` may have any length.
+    LineOverEdge(const RoundedEdge& edge, const Vec3& x, const Vec3& direction);
+    LineDistance at(double s) const;
+
+  private:
+    const RoundedEdge& edge_;
+    double height_[2], climb_[2];  // over both planes, and their slopes
+    double across_ = 0;            // square of the direction's part across the edge
+};
+
 /// Returns the distance from a concave corner: the smaller of both distances. Where they differ by less than
 /// `rounding` it is rounded, by at most a quarter of `rounding`.
 Distance corner_distance(const Wedge& wedge, double rounding, const Vec3& x);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "brush/rod/solver_work.h"
 #include "core/geometry/types.h"
 #include "core/system/recycled.h"
 
@@ -97,6 +98,7 @@ struct TuftState {
     bool touching = false;
     bool converged = true;  ///< false: the solver stopped at its limit with its best state
     int iterations = 0;
+    SolverWork work;  ///< of all parts of the motion to this state
 };
 
 /// Contact plane of the tuft, or of one node: points p with dot(p − origin, normal) < 0 are inside the object. Next

@@ -146,15 +146,18 @@ Solved finish_spine(const SpineStep& step, Spine& spine, SolvedRod rod, const Ne
     return out;
 }
 
-Solved solve_spine(const SpineStep& step, Spine& spine, const Passed& passed) {
+Solved solve_spine(const SpineStep& step, Spine& spine, const Passed& passed, const rod::Guess* guess) {
     const Preset& p = step.preset;
     const rod::Law law = law_of(p, step.wetness, step.share, step.dt);
     const Recycled<rod::Obstacle> obstacles = obstacles_of(p, spine, step.planes);
-    rod::Result result = rod::solve(
-        spine.rod, spine.memory, step.clamp,
-        {.obstacles = obstacles, .law = law, .walls = flank_walls(p, spine, step.rotation, step.walls, step.wetness)});
+    rod::Result result = rod::solve(spine.rod, spine.memory, step.clamp,
+                                    {.obstacles = obstacles,
+                                     .law = law,
+                                     .walls = flank_walls(p, spine, step.rotation, step.walls, step.wetness),
+                                     .guess = guess});
     spine.pressed = result.contact_energy;
     result.dissipation += passed.dissipation;
+    result.work += passed.work;
     for (std::size_t i = 0; i < passed.slip.size(); ++i) result.slip[i] += passed.slip[i];
     const Recycled<Vec3> node = rod::curve_nodes(spine.rod, spine.memory.node);
     return finish_spine(step, spine, {std::move(result), node, obstacles});
@@ -168,6 +171,7 @@ constexpr double kCareful = 0.006, kOrdinary = 0.03;
 constexpr double kLaid = 0.8;      ///< bend from which the hair lies as it will, radians
 constexpr double kTeleport = 0.5;  ///< lengths; a further jump is no motion to follow
 constexpr int kMaxParts = 8;
+constexpr int kPassesOnTheWay = 2;  ///< over the normal forces; the last part passes on until they settle
 
 }  // namespace
 
@@ -183,36 +187,69 @@ int count_substeps(const Preset& p, const Pose& from, const Pose& to, double ben
     return std::clamp(static_cast<int>(std::ceil(moved / largest)), 1, kMaxParts);
 }
 
-Passed follow_ferrule(SpineStep& step, Spine& spine, const Pose& from, const Pose& to) {
+namespace {
+
+/// Upright hair's end and where straight hair points at a pose.
+Upright upright_at(const Preset& p, const Pose& pose) {
+    return {.tip = pose.position + p.length * pose.axis()};
+}
+
+/// Moves the spine to just before the last of `parts` parts of the motion. Returns the pose where that part begins.
+Pose follow_parts(const SpineStep& step, Spine& spine, const Pose& from, const Pose& to, int parts, Passed& passed) {
     const Preset& p = step.preset;
-    const std::span<const ContactPlane> planes = step.planes;
     rod::Law law = law_of(p, step.wetness, 1, 0);
-    Passed passed;
-    if (planes.empty()) return passed;
-    const auto upright = [&](const Pose& pose) { return Upright{.tip = pose.position + p.length * pose.axis()}; };
-    const double bend =
-        std::acos(std::clamp(glm::dot(spine.memory.tangent.back(), spine.memory.clamp.tangent), -1.0, 1.0));
-    const int parts = count_substeps(p, from, to, bend);
     law.max_iterations = std::max(30, law.max_iterations / parts);
-    step.dt /= parts;
+    law.max_passes = kPassesOnTheWay;
     set_time(p, step.dt, law);
     Pose last = from;
     for (int k = 1; k < parts; ++k) {
         const Pose pose = between(from, to, static_cast<double>(k) / parts);
-        turn_with_spread(p, spine, last, pose, planes);
-        break_symmetry(p, spine, last, pose, planes, upright(pose));
+        turn_with_spread(p, spine, last, pose, step.planes);
+        break_symmetry(p, spine, last, pose, step.planes, upright_at(p, pose));
         const rod::Result r = rod::solve(spine.rod, spine.memory, clamp_of(p, pose),
-                                         {.obstacles = obstacles_of(p, spine, planes),
+                                         {.obstacles = obstacles_of(p, spine, step.planes),
                                           .law = law,
                                           .walls = flank_walls(p, spine, pose.rotation, step.walls, step.wetness)});
         spine.pressed = r.contact_energy;
         passed.dissipation += r.dissipation;
+        passed.work += r.work;
         passed.slip.resize(r.slip.size(), Vec3{0});
         for (std::size_t i = 0; i < r.slip.size(); ++i) passed.slip[i] += r.slip[i];
         last = pose;
     }
-    turn_with_spread(p, spine, last, to, planes);
-    break_symmetry(p, spine, last, to, planes, upright(to));
+    return last;
+}
+
+}  // namespace
+
+Passed follow_ferrule(SpineStep& step, Spine& spine, const Pose& from, const Pose& to, StepStart* start) {
+    const Preset& p = step.preset;
+    Passed passed;
+    if (step.planes.empty()) return passed;
+    Pose last = from;
+    if (start && start->known && start->in_parts) {
+        spine = start->spine;
+        last = start->from;
+        step.dt = start->dt;
+        passed.dissipation = start->dissipation;
+        passed.slip = start->slip;
+    } else {
+        const double bend =
+            std::acos(std::clamp(glm::dot(spine.memory.tangent.back(), spine.memory.clamp.tangent), -1.0, 1.0));
+        const int parts = count_substeps(p, from, to, bend);
+        step.dt /= parts;
+        last = follow_parts(step, spine, from, to, parts, passed);
+        if (start) start->in_parts = parts > 1;
+        if (start && parts > 1) {
+            start->spine = spine;
+            start->from = last;
+            start->dt = step.dt;
+            start->dissipation = passed.dissipation;
+            start->slip = passed.slip;
+        }
+    }
+    turn_with_spread(p, spine, last, to, step.planes);
+    break_symmetry(p, spine, last, to, step.planes, upright_at(p, to));
     return passed;
 }
 

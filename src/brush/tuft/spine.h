@@ -19,6 +19,7 @@ struct Solved {
 
 /// Dissipation and slip on the path to a pose, in units of L and B0.
 struct Passed {
+    SolverWork work;
     double dissipation = 0;
     Recycled<Vec3> slip;  ///< [n+1] as in rod::Result; or none
 };
@@ -79,11 +80,12 @@ Solved finish_spine(const SpineStep& step, Spine& spine, SolvedRod rod, const Ne
 Spine make_spine(const Preset& preset, const rod::Rod& rod, const rod::Clamp& clamp, double xi0, double share);
 
 /// Moves the spine from pose `from` to just before `to` in small steps, and turns upright hair behind the motion.
-/// `step.dt`: on entry seconds of the whole motion, on return seconds of the remaining part.
-Passed follow_ferrule(SpineStep& step, Spine& spine, const Pose& from, const Pose& to);
+/// `step.dt`: on entry seconds of the whole motion, on return seconds of the remaining part. `start` as in
+/// `brush::step`.
+Passed follow_ferrule(SpineStep& step, Spine& spine, const Pose& from, const Pose& to, StepStart* start = nullptr);
 
 /// Solves the spine with the rod solver. Adds `passed`, the earlier part of this step, to the result.
-Solved solve_spine(const SpineStep& step, Spine& spine, const Passed& passed = {});
+Solved solve_spine(const SpineStep& step, Spine& spine, const Passed& passed = {}, const rod::Guess* guess = nullptr);
 
 /// Solves the spine with the query table. It is bent in the plane of the holder and the tip's last position, so
 /// that the tip follows the hand as a tractrix, by the moment that places the tip on the plane.

@@ -143,12 +143,21 @@ void add_spine(const Preset& p, const Spine& spine, Solved solved, const Vec3& l
     state.energy.lost += r.dissipation * newton_metre - solved.aside_gain;
     state.converged = state.converged && r.converged;
     state.iterations = std::max(state.iterations, r.iterations);
+    state.work += r.work;
     state.branches.push_back(std::move(solved.branch));
+}
+
+/// Notes the shape that was found, for another step to the same pose.
+void note_guess(const Spine& spine, StepStart& start) {
+    start.known = true;
+    start.guess.tangent = spine.memory.tangent;
+    start.guess.force.clear();
+    for (const rod::ContactMemory& c : spine.memory.contact) start.guess.force.push_back(c.force);
 }
 
 /// Bends a tuft of one spine.
 TuftState bend_trunk(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt,
-                     std::span<const ContactPlane> walls) {
+                     std::span<const ContactPlane> walls, StepStart* start) {
     const Preset& p = tuft.preset;
     const std::size_t own = tuft.trunk().rest_radius.size();
     SpineStep step{.preset = p,
@@ -160,9 +169,11 @@ TuftState bend_trunk(Tuft& tuft, const Pose& pose, std::span<const ContactPlane>
     // The table knows no walls.
     if (p.spine != SpineMethod::table) step.walls = walls;
     Passed passed;
-    if (p.spine == SpineMethod::rod) passed = follow_ferrule(step, tuft.trunk(), tuft.pose, pose);
-    Solved solved = p.spine == SpineMethod::table ? bend_by_table(step, tuft.table, tuft.trunk())
-                                                  : solve_spine(step, tuft.trunk(), passed);
+    if (p.spine == SpineMethod::rod) passed = follow_ferrule(step, tuft.trunk(), tuft.pose, pose, start);
+    Solved solved = p.spine == SpineMethod::table
+                        ? bend_by_table(step, tuft.table, tuft.trunk())
+                        : solve_spine(step, tuft.trunk(), passed, start && start->known ? &start->guess : nullptr);
+    if (start) note_guess(tuft.trunk(), *start);
     TuftState state;
     add_spine(p, tuft.trunk(), std::move(solved), Vec3{0}, state);
     return state;
@@ -174,6 +185,7 @@ TuftState bend_wide(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> 
     const Preset& p = tuft.preset;
     SolvedSpines solved = solve_spines(tuft, pose, planes, walls, dt);
     TuftState state{.wide = true, .strips = has_broad_side(p)};
+    state.work = solved.work;
     double lost = solved.dissipation;
     for (std::size_t k = 0; k < tuft.spines.size(); ++k) {
         Spine& spine = tuft.spines[k];
@@ -204,7 +216,7 @@ TuftState bend_wide(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> 
 }  // namespace
 
 TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt,
-               std::span<const ContactPlane> walls) {
+               std::span<const ContactPlane> walls, StepStart* start) {
     const Preset& p = tuft.preset;
     const std::size_t expected = expected_planes(tuft);
     if (planes.size() > 1 && planes.size() != expected) {
@@ -234,7 +246,7 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
     const double part = std::isfinite(dt) ? std::max(0.0, dt) : 0,
                  moved = glm::length(pose.position - tuft.pose.position);
     TuftState state =
-        tuft.wide() ? bend_wide(tuft, pose, planes, part, walls) : bend_trunk(tuft, pose, planes, part, walls);
+        tuft.wide() ? bend_wide(tuft, pose, planes, part, walls) : bend_trunk(tuft, pose, planes, part, walls, start);
     tuft.pose = pose;
     feel(tuft, state, dt);
     if (tuft.carried) place_geometry(tuft, planes, state);

@@ -99,6 +99,19 @@ struct Tuft : TuftBend {
     bool wide() const { return spines.size() > 1; }
 };
 
+/// What a step of a tuft of one spine leaves for being taken again at the same pose with planes that are little
+/// different: it need not follow the ferrule again, and starts from the shape that it found.
+struct StepStart {
+    bool known = false;      ///< false: the step fills it
+    bool in_parts = false;   ///< the ferrule went in more than one part
+    Spine spine;             ///< before the last of them
+    Pose from;               ///< where the last part begins
+    double dt = 0;           ///< s, of the last part
+    double dissipation = 0;  ///< of the parts before, B0/L
+    Recycled<Vec3> slip;     ///< of the parts before, as in rod::Result; or none
+    rod::Guess guess;        ///< the shape that was found
+};
+
 /// Returns a straight tuft; `seed` places its hair. Throws `Error` for values out of range.
 Tuft make_tuft(const Preset& preset, std::uint64_t seed = 0);
 
@@ -117,8 +130,10 @@ Recycled<Vec3> predicted_sides(const Tuft& tuft, const Pose& pose);
 /// step. The result is finite and the time is bounded; `converged` is false when the solver stopped early. Throws
 /// `Error` when the number of planes or walls fits none of these cases, or when the pose is not finite or its
 /// rotation not a unit quaternion. Cost: 20–60 µs for a spine of 16 segments.
+///
+/// `start`: null, or what the first of several steps from one state to one pose fills and the others use.
 TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt,
-               std::span<const ContactPlane> walls = {});
+               std::span<const ContactPlane> walls = {}, StepStart* start = nullptr);
 
 /// Resets the tuft to its state after `make_tuft`; wetness and ink are retained.
 void reset(Tuft& tuft);

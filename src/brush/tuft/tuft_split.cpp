@@ -117,6 +117,7 @@ void solve_sub_spines(Tuft& tuft, std::span<const ContactPlane> planes, TuftStat
                                      .dt = dt},
                                     sub_spine);
         state.iterations += solved.result.iterations;
+        state.work += solved.result.work;
         state.converged = state.converged && solved.result.converged;
         Branch branch = std::move(solved.branch);
         branch.ink_share = 1.0 / count_all;

@@ -275,6 +275,7 @@ namespace {
 /// What follows from the motion of the ferrule to one pose.
 struct Followed {
     rod::CoupledResult result;      ///< of the last part of the motion
+    SolverWork work;                ///< all parts together
     Recycled<Recycled<Vec3>> slip;  ///< of each spine, all parts together
     double dissipation = 0;         ///< all parts together
 };
@@ -298,6 +299,7 @@ Followed follow_pose(Tuft& tuft, const Pose& to, std::span<const ContactPlane> p
         const int most = k == parts ? whole.max_iterations : std::max(30, whole.max_iterations / parts);
         out.result = coupled.solve(tuft, pose, planes, walls, part_dt, most);
         out.dissipation += out.result.dissipation;
+        out.work += out.result.work;
         for (std::size_t i = 0; i < k_all; ++i) {
             const rod::Result& r = out.result.rods[i];
             tuft.spines[i].pressed = r.contact_energy;
@@ -356,9 +358,10 @@ SolvedSpines solve_spines(Tuft& tuft, const Pose& to, std::span<const ContactPla
                           std::span<const ContactPlane> walls, double dt) {
     const Preset& p = tuft.preset;
     Coupled coupled;
-    auto [result, slip, dissipation] = follow_pose(tuft, to, planes, walls, dt, coupled);
+    auto [result, work, slip, dissipation] = follow_pose(tuft, to, planes, walls, dt, coupled);
     SolvedSpines out;
     out.dissipation = dissipation;
+    out.work = work;
     out.coupling_energy = result.energy;
     out.film_range = p.length * coupling_of(p, tuft.wetness).film_range * (tuft.wetness > 0 ? 1 : 0);
     const Bent bent = store_axes(tuft, to.rotation);

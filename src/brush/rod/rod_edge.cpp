@@ -1,0 +1,186 @@
+#include "brush/rod/rod_edge.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brush/rod/rod_law.h"
+
+namespace tuft::brush::rod {
+
+namespace {
+
+/// A piece shortened along itself by `s`.
+struct Shortened {
+    double s = 0, depth = 0;
+    double miss = 0;   // s / compliance less the force along the hair
+    double slope = 0;  // ∂miss/∂s
+    double push = 0;   // of the contact
+};
+
+/// A piece of hair over a crease.
+class PieceOverEdge {
+  public:
+    PieceOverEdge(const Frozen& frozen, int p, const HairPiece& piece, const Recycled<Vec3>& node)
+        : law_(*frozen.law),
+          obstacle_(frozen.obstacles[p]),
+          crease_(frozen.crease[p]),
+          piece_(piece),
+          x(piece.at.at(node)),
+          inwards(piece.at.inwards(node)),
+          line_(crease_.edge, x, inwards),
+          height_(glm::dot(x - obstacle_.origin, obstacle_.normal)),
+          climb_(glm::dot(inwards, obstacle_.normal)) {}
+
+    /// Where the piece stands.
+    Shortened stand() const;
+    Distance distance_at(double s) const { return distance_of(obstacle_, crease_, law_.edge, x + s * inwards); }
+
+  private:
+    LineDistance line_at(double s) const;
+    Shortened at(double s) const;
+    Shortened between(Shortened low, Shortened high) const;
+
+    const Law& law_;
+    const Obstacle& obstacle_;
+    const Crease& crease_;
+    const HairPiece& piece_;
+
+  public:
+    const Vec3 x, inwards;  // where it is, and its direction to the root
+
+  private:
+    LineOverEdge line_;
+    double height_, climb_;  // over the point's own plane
+};
+
+LineDistance PieceOverEdge::line_at(double s) const {
+    const LineDistance d = line_.at(s);
+    const double own = height_ + s * climb_, share = crease_.share;
+    return {own + share * (d.z - own), climb_ + share * (d.slope - climb_), share * d.bend};
+}
+
+Shortened PieceOverEdge::at(double s) const {
+    const LineDistance d = line_at(s);
+    Shortened out{.s = s, .depth = piece_.radius - d.z};
+    const NormalForce push = normal_force(law_, piece_.weight, piece_.radius, out.depth, 0),
+                      pull = adhesion(law_, piece_.weight, -out.depth);
+    out.push = push.force;
+    if (piece_.compliance > 0) {
+        const double force = push.force - pull.force;
+        out.miss = s / piece_.compliance - force * d.slope;
+        out.slope = 1 / piece_.compliance + (push.stiffness + pull.stiffness) * d.slope * d.slope - force * d.bend;
+    }
+    return out;
+}
+
+// Bracketed from outside, where hair that comes from its root meets the surface.
+Shortened PieceOverEdge::stand() const {
+    Shortened low = at(0);
+    if (piece_.compliance <= 0 || low.push <= 0) return low;
+    constexpr int kSteps = 12;
+    const double step = 3 * law_.end_compliance / kSteps;
+    Shortened high = at(kSteps * step);
+    if (high.miss <= 0) return high;
+    // A step brings hair no nearer to the surface than it is long: as far as neither contact nor film can begin, no
+    // sign changes.
+    const double off = -high.depth - law_.adhesion_range - 1e-9;
+    const int clear = std::clamp(static_cast<int>(off / step), 0, kSteps - 1);
+    if (clear > 0) high = at((kSteps - clear) * step);
+    for (int k = kSteps - clear; k-- > 0;) {
+        low = at(k * step);
+        if (low.miss <= 0) break;
+        high = low;
+    }
+    return low.miss >= 0 ? low : between(low, high);
+}
+
+// Newton's method, by halves where it leaves the bracket.
+Shortened PieceOverEdge::between(Shortened low, Shortened high) const {
+    Shortened mid = low;
+    double s = (low.s * high.miss - high.s * low.miss) / (high.miss - low.miss);
+    for (int i = 0; i < 60 && high.s - low.s > 1e-15; ++i) {
+        mid = at(s);
+        if (std::abs(mid.miss) < 1e-12 * (1 + mid.push)) break;
+        (mid.miss > 0 ? high : low) = mid;
+        s = mid.s - mid.miss / mid.slope;
+        if (!(s > low.s && s < high.s)) s = 0.5 * (low.s + high.s);
+    }
+    return mid;
+}
+
+/// Forces of a piece where it stands.
+struct PieceForces {
+    NormalForce push, pull;
+};
+
+PieceForces forces_of(const Law& law, const HairPiece& piece, double depth) {
+    return {normal_force(law, piece.weight, piece.radius, depth, 0), adhesion(law, piece.weight, -depth)};
+}
+
+/// Adds the derivatives of a piece that stands at `st`. With y = x + s i and ψ(y) the contact's potential:
+/// E = s²/(2 compliance) + ψ, E_x = ψ', E_i = s ψ'.
+void add_piece(const HairPiece& piece, const PieceOverEdge& hair, const Shortened& st, const PieceForces& f,
+               Evaluation& out) {
+    const Stencil& at = piece.at;
+    const double force = f.push.force - f.pull.force;
+    const Distance at_surface = hair.distance_at(st.s);
+    const Vec3& n = at_surface.slope;
+    const Vec3 slope = -force * n;
+    Sym3 xx = (f.push.stiffness + f.pull.stiffness) * outer(n);
+    xx += -force * at_surface.bend * outer(at_surface.across);
+    if (st.s > 0) {
+        const Vec3 ci = xx * hair.inwards, b = slope + st.s * ci;
+        const double total = std::max(1 / piece.compliance + glm::dot(hair.inwards, ci), 0.01 / piece.compliance);
+        const Sym3 ii = st.s * st.s * xx + -1 / total * outer(b);
+        const Sym3 mixed = 2 * st.s * xx + -2 / total * symmetric(ci, b);
+        xx += -1 / total * outer(ci);
+        add_slope(at, at.d, st.s * slope, out);
+        add_curvature(at, mixed, out, [&](int k, int l) { return 0.5 * (at.w[k] * at.d[l] + at.d[k] * at.w[l]); });
+        add_curvature(at, ii, out, [&](int k, int l) { return at.d[k] * at.d[l]; });
+    }
+    add_potential(at, slope, xx, out);
+}
+
+}  // namespace
+
+bool is_clear_of_edge(const Frozen& frozen, int p, const Vec3& x) {
+    const Obstacle& o = frozen.obstacles[p];
+    const double length = frozen.rod->length[frozen.place[p].node] / frozen.law->points_per_segment;
+    return distance_of(o, frozen.crease[p], frozen.law->edge, x).z - o.radius >= frozen.law->adhesion_range + length;
+}
+
+double add_hair_at_edge(const Frozen& frozen, int p, bool derivatives, Evaluation& out) {
+    double energy = 0;
+    for (const HairPiece& piece : frozen.piece[p]) {
+        if (piece.weight <= 0) continue;
+        const PieceOverEdge hair(frozen, p, piece, out.node);
+        const Shortened st = hair.stand();
+        const PieceForces f = forces_of(*frozen.law, piece, st.depth);
+        if (f.push.force == f.pull.force) continue;
+        energy += f.push.energy + f.pull.energy;
+        if (st.s > 0) energy += st.s * st.s / (2 * piece.compliance);
+        if (!derivatives) continue;
+        out.normal[p] += f.push.force;
+        add_piece(piece, hair, st, f, out);
+    }
+    return energy;
+}
+
+Obstacle mean_plane_at_edge(const Frozen& frozen, int p, const Recycled<Vec3>& node, const Obstacle& here) {
+    double total = 0;
+    Vec3 normal{0}, origin{0};
+    for (const HairPiece& piece : frozen.piece[p]) {
+        if (piece.weight <= 0) continue;
+        const PieceOverEdge hair(frozen, p, piece, node);
+        const Shortened st = hair.stand();
+        if (st.push <= 0) continue;
+        const Distance d = hair.distance_at(st.s);
+        total += st.push;
+        normal += st.push * d.slope;
+        origin += st.push * (hair.x + st.s * hair.inwards - d.z * d.slope);
+    }
+    const double mean = glm::length(normal);
+    return mean > 1e-6 * total && total > 0 ? Obstacle{origin / total, normal / mean, here.radius} : here;
+}
+
+}  // namespace tuft::brush::rod
