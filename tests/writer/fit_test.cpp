@@ -76,6 +76,20 @@ TEST(Writer, InkCoversThePredictedArea) {
     }
 }
 
+// A brush that does not fit is answered with a size that does, and the style's own fits at any size of characters.
+TEST(Writer, NamesTheSizeOfABrushThatFits) {
+    for (const double side : {0.012, 0.05, 0.133, 0.3}) {
+        const Writer writer({.style = load_style("kaishu"), .side = side});
+        EXPECT_EQ(size_that_fits(writer.brush(), side), std::nullopt) << writer.brush();
+    }
+    EXPECT_EQ(size_that_fits("goat-medium", 0.133), std::nullopt);
+    for (const auto& [brush, side] : {std::pair{"wolf-large", 0.02}, std::pair{"goat-small", 0.4}}) {
+        const auto fits = size_that_fits(brush, side);
+        ASSERT_TRUE(fits) << brush;
+        EXPECT_EQ(size_that_fits(*fits, side), std::nullopt) << *fits;
+    }
+}
+
 TEST(Fit, AStraightBarIsCoveredFromAWrongStart) {
     stroke::WidthTables tables;
     const std::string brush = "goat-medium";

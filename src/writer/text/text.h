@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,6 +58,10 @@ Vec2 extent_of(const Text& text);
 
 /// Returns the length of a text of one line along a path, parts of the side.
 double length_of(const Text& text);
+
+/// Returns the size of a brush that draws the text's strokes, where the brush itself is too coarse or too fine for them
+/// (`size_that_fits`). None for texts without strokes of a pointed brush.
+std::optional<std::string> size_for(const Text& text, const std::string& brush);
 
 /// How a text's strokes are made.
 struct TextHand {
