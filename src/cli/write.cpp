@@ -14,6 +14,7 @@
 #include "stroke/drawing/drawing.h"
 #include "stroke/drawing/free_area.h"
 #include "writer/copy/copied_glyph.h"
+#include "writer/fit/writer.h"
 #include "writer/text/text.h"
 
 namespace tuft::cli {
@@ -80,9 +81,23 @@ writer::TextHand hand_of(const Write& a) {
             .cache = DiskCache(a.surface.no_cache ? "" : cache_folder("writer"))};
 }
 
+/// Names the size of a brush that the user chose and that cannot draw strokes as wide as the text has at a pressure
+/// that guides the tuft.
+void note_size(const writer::Text& text, const Write& a, Console& console) {
+    const std::string brush = entry_options(a).brush;
+    if (brush.empty()) return;
+    const double side = text.layout.side / kMillimetre;
+    if (const auto fits = writer::size_for(text, brush))
+        console.note(
+            fmt::format("{} does not suit characters of {:.3g} mm, whose strokes are about {:.2g} mm wide: "
+                        "--brush '{}' does",
+                        brush, side, writer::kMedianStroke / writer::kSide * side, *fits));
+}
+
 std::optional<PlacedDrawing> write_in_lines(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
                                             writer::Text text, const Write& a, Console& console) {
     text.layout.side = side_in_lines(text, model, a);
+    note_size(text, a, console);
     writer::append_lines(strokes, text, hand_of(a), console.progress());
     // The strokes have the size that their brush was fitted at: it stays.
     Write at = a;
@@ -105,6 +120,7 @@ std::optional<PlacedDrawing> write_along(std::vector<stroke::JournalEntry>& stro
     if (a.place_width_mm > 0) side = a.place_width_mm * kMillimetre / whole;
     if (a.size_mm > 0) side = a.size_mm * kMillimetre;
     text.layout.side = side;
+    note_size(text, a, console);
     writer::append_along(strokes, text, on.path, on.middle, hand_of(a), console.progress());
     Write placed = a;  // every character has its place
     placed.place_mm.clear(), placed.on.clear();

@@ -76,6 +76,62 @@ TEST(Writer, InkCoversThePredictedArea) {
     }
 }
 
+/// Width across of the ink of a level line of half width 20, `inside` units from the first ink of its head, units.
+double width_of_head(const BrushHand& hand, const Pace& pace, double inside) {
+    std::vector<Station> line;
+    for (int i = 0; i <= 40; ++i) line.push_back({{100 + 8.0 * i, 100}, std::min(20.0, 5 + 2.0 * i)});
+    const stroke::PlaneInk ink = draw_on_plane(line, hand, pace, 1, 0.5);
+    const auto width_at = [&](double x) {
+        double width = 0;
+        for (double y = 50.25; y < 150; y += 0.5) width += 0.5 * (ink.at(hand.unit * Vec2(x, y)) > 0.5);
+        return width;
+    };
+    double first = 60;
+    while (first < 140 && width_at(first) < 1) first += 0.5;
+    return width_at(first + inside);
+}
+
+TEST(BrushHand, AHeadIsSetDownAcrossThePathAndIsRounderForIt) {
+    stroke::WidthTables tables;
+    const std::string brush = "goat-medium";
+    const BrushHand hand{tables.preset(brush), tables.of(brush), tables.holder(brush), 1.3e-4};
+    const std::vector<Station> line{{{100, 100}, 8}, {{108, 100}, 14}, {{116, 100}, 20}, {{124, 100}, 20}};
+    const Pace pace;
+    const stroke::StrokeSamples trace = samples_of(line, hand, pace), plain = samples_of(line, hand, {.across = 0});
+    ASSERT_GT(trace.samples.size(), plain.samples.size());
+    const std::size_t touch = trace.samples.size() - plain.samples.size();
+    double middle = 0;
+    for (std::size_t i = 0; i < touch; ++i) {
+        const stroke::StrokeSample& s = trace.samples[i];
+        EXPECT_NEAR(s.position.x, plain.samples[0].position.x, 1e-12);
+        EXPECT_LE(std::abs(s.position.y - plain.samples[0].position.y), pace.across * hand.unit + 1e-12);
+        EXPECT_EQ(s.pressure, trace.samples[0].pressure);
+        middle += (s.position.y - plain.samples[0].position.y) / static_cast<double>(touch);
+    }
+    EXPECT_NEAR(middle, 0, 1e-12);
+    EXPECT_EQ(trace.samples[0].time, 0);
+    for (std::size_t i = 1; i < trace.samples.size(); ++i) EXPECT_GT(trace.samples[i].time, trace.samples[i - 1].time);
+    for (std::size_t i = 0; i < plain.samples.size(); ++i)
+        EXPECT_EQ(trace.samples[touch + i].position, plain.samples[i].position);
+    // A disc of radius r is 2 √(6 r − 9) wide 3 units inside its edge: 5 for the tip's 2.5 units, 7.5 for 3.8. Half the
+    // difference is asked for.
+    EXPECT_GT(width_of_head(hand, pace, 3), 1.25 * width_of_head(hand, {.across = 0}, 3));
+}
+
+// A brush that does not fit is answered with a size that does, and the style's own fits at any size of characters.
+TEST(Writer, NamesTheSizeOfABrushThatFits) {
+    for (const double side : {0.012, 0.05, 0.133, 0.3}) {
+        const Writer writer({.style = load_style("kaishu"), .side = side});
+        EXPECT_EQ(size_that_fits(writer.brush(), side), std::nullopt) << writer.brush();
+    }
+    EXPECT_EQ(size_that_fits("goat-medium", 0.133), std::nullopt);
+    for (const auto& [brush, side] : {std::pair{"wolf-large", 0.02}, std::pair{"goat-small", 0.4}}) {
+        const auto fits = size_that_fits(brush, side);
+        ASSERT_TRUE(fits) << brush;
+        EXPECT_EQ(size_that_fits(*fits, side), std::nullopt) << *fits;
+    }
+}
+
 TEST(Fit, AStraightBarIsCoveredFromAWrongStart) {
     stroke::WidthTables tables;
     const std::string brush = "goat-medium";

@@ -10,7 +10,9 @@ not marked down for where it wrote. Prints for each character and in the mean:
   knuckles     per stroke: convex maxima of the curvature of the painted outline, above 1/25 unit after a Gaussian of
                6 units, that the model has not (none of half the size within 30 units)
   beyond       95th percentile of the distance of the painted outline from that of the model, units
+  within       shares of the painted outline within 8 and within 14 units of the model's
   cpu          seconds of the whole command per stroke, model and painting included
+and names the ten worst.
 With --drawn FOLDER, the pictures of `measure_writer score --drawn` are scored as they lie, in place of paintings.
 Needs numpy and Pillow."""
 import argparse, json, os, random, resource, subprocess, sys, tempfile
@@ -119,7 +121,7 @@ def knuckles(painted, model):
     mine, edge = maxima(painted, 1/25); theirs, ideal = maxima(model, .5/25)
     n = sum(1 for z, k in mine if not any(abs(z-w) < 30 and q > .5*k for w, q in theirs))
     step = max(1, len(edge)//1500); far = [np.abs(ideal - z).min() for z in edge[::step]]
-    return n, float(np.percentile(far, 95))
+    far = np.array(far); return n, float(np.percentile(far, 95)), float((far < 8).mean()), float((far < 14).mean())
 
 if __name__ == '__main__':
     a = argparse.ArgumentParser(); a.add_argument('data'); a.add_argument('characters'); a.add_argument('--tuft', default='tuft'); a.add_argument('--drawn', default='')
@@ -141,8 +143,10 @@ if __name__ == '__main__':
         T = truth(character)
         if o.drawn: R = np.asarray(Image.open(os.path.join(o.drawn, c + '.pgm'))) < INK; iou = (R & T).sum()/(R | T).sum()
         else: os.remove(out + '.tuft'); R, iou = best_match(T, np.asarray(Image.open(out + '-base-colour.png').convert('L')))
-        k, far = knuckles(R, T) if R is not None else (0, 999)
-        rows.append((iou, k/n, far, cpu, n)); print('%s strokes %2d IoU %.3f knuckles %.2f beyond %.1f cpu %.3f' % (c, n, iou, k/n, far, cpu), flush=True)
+        k, far, near, about = knuckles(R, T) if R is not None else (0, 999, 0, 0)
+        rows.append((iou, k/n, far, cpu, n, near, about))
+        print('%s strokes %2d IoU %.3f knuckles %.2f beyond %.1f within %.3f %.3f cpu %.3f' % (c, n, iou, k/n, far, near, about, cpu), flush=True)
     r = np.array(rows); w = r[:, 4]/r[:, 4].sum()
-    print('%d characters: IoU mean %.4f, worst %.3f; knuckles %.2f a stroke; outline within %.1f units at 95 %%; cpu %.3f s a stroke' % (
-        len(r), r[:, 0].mean(), r[:, 0].min(), (r[:, 1]*w).sum(), (r[:, 2]*w).sum(), (r[:, 3]*w).sum()))
+    print('%d characters: IoU mean %.4f, worst %.3f; knuckles %.2f a stroke; outline within %.1f units at 95 %%, %.3f of it within 8 and %.3f within 14; cpu %.3f s a stroke' % (
+        len(r), r[:, 0].mean(), r[:, 0].min(), (r[:, 1]*w).sum(), (r[:, 2]*w).sum(), (r[:, 5]*w).sum(), (r[:, 6]*w).sum(), (r[:, 3]*w).sum()))
+    print('worst:', ', '.join('%s %.3f' % (text[i], r[i, 0]) for i in r[:, 0].argsort()[:10]))

@@ -71,6 +71,14 @@ double PlaneInk::when(const Vec2& p) const {
 double PlaneInk::at(const Vec2& p) const {
     const Vec2 cells = p / cell_ - 0.5, low = glm::floor(cells), f = cells - low;
     const auto i = static_cast<std::int64_t>(low.x), j = static_cast<std::int64_t>(low.y);
+    std::size_t cell = 0;
+    const Tile* one = tile(i, j, cell);
+    if (cell % kTile + 1 < kTile && cell / kTile + 1 < kTile) {  // all four in one tile
+        if (!one) return 0;
+        const auto in_tile = [&](std::size_t k) { return one->coverage[cell + k] / 255.0; };
+        return std::lerp(std::lerp(in_tile(0), in_tile(1), f.x), std::lerp(in_tile(kTile), in_tile(kTile + 1), f.x),
+                         f.y);
+    }
     return std::lerp(std::lerp(value(i, j), value(i + 1, j), f.x), std::lerp(value(i, j + 1), value(i + 1, j + 1), f.x),
                      f.y);
 }

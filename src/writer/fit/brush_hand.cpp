@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kBlunt = 12;       // units of half width from which an end is blunt
 constexpr double kLiftTime = 0.03;  // seconds from the last ink to the free tip
+constexpr double kTouchReach = 16;  // units about the first station whose width bounds the touch
+constexpr int kTouchSamples = 9;
 
 /// Curvature at a station from its neighbours two stations away, 1/units.
 double curvature(std::span<const Station> s, std::size_t i) {
@@ -22,6 +24,27 @@ double pressure_of(double half, const BrushHand& hand) {
     const double width = 2 * half * hand.unit, least = hand.widths.least();
     if (width >= least) return hand.widths.pressure(width);
     return stroke::LineWidths::kLightest * std::max(width, 0.0) / least;
+}
+
+/// Samples of the touch across the path before its first station, earlier in time. Empty without `pace.across`.
+std::vector<stroke::StrokeSample> touch_of(std::span<const Station> s, const BrushHand& hand, const Pace& pace) {
+    std::vector<stroke::StrokeSample> touch;
+    const Vec2 on = s[std::min<std::size_t>(2, s.size() - 1)].centre - s[0].centre;
+    const double length = glm::length(on);
+    if (!(pace.across > 0 && length > 1e-9)) return touch;
+    const Vec2 left = Vec2(-on.y, on.x) / length;
+    double half = 0;
+    for (std::size_t i = 0; i < s.size() && glm::distance(s[i].centre, s[0].centre) <= kTouchReach; ++i)
+        half = std::max(half, s[i].half);
+    const double pressure = std::min(pace.touch, pressure_of(half, hand));
+    const double across_time = pace.across * hand.unit / (pace.speed * pace.ends);
+    for (int k = 0; k < kTouchSamples; ++k) {
+        const double aside = 1 - 2.0 * k / (kTouchSamples - 1);  // from the left to the right
+        const Vec2 at = hand.unit * (s[0].centre + aside * pace.across * left);
+        // At the right end it has as far to go to the first station as from the middle.
+        touch.push_back({.time = -(2 + aside) * across_time, .position = {at.x, -at.y, 0}, .pressure = pressure});
+    }
+    return touch;
 }
 
 }  // namespace
@@ -44,6 +67,11 @@ stroke::StrokeSamples samples_of(std::span<const Station> stations, const BrushH
         trace.samples.push_back({.time = time,
                                  .position = {stations[i].centre.x * hand.unit, -stations[i].centre.y * hand.unit, 0},
                                  .pressure = pressure_of(stations[i].half, hand)});
+    }
+    if (const std::vector<stroke::StrokeSample> touch = touch_of(stations, hand, pace); !touch.empty()) {
+        trace.samples.insert(trace.samples.begin(), touch.begin(), touch.end());
+        const double begin = touch.front().time;
+        for (stroke::StrokeSample& sample : trace.samples) sample.time -= begin;
     }
     stroke::StrokeSample last = trace.samples.back();
     last.time += kLiftTime;

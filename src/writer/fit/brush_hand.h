@@ -30,11 +30,16 @@ struct Pace {
     double radius = 150;  ///< units
     double ends = 0.3;    ///< part of the speed
     double ease = 40;     ///< units
+    /// Units to either side of the path over which a head is set down, from the left to the right; 0: along the path.
+    double across = 1;
+    double touch = 0.1;  ///< pressure of that, at most that of the head's width
 };
 
 /// Returns the flat samples of a hand along stations, metres, y down: pressures that draw the widths
 /// (`LineWidths::pressure`, below the least width in proportion to 0), the holder upright, and a last sample where the
-/// tip leaves. Frame: the character's square, origin at its lower left corner, so y is negative within it.
+/// tip leaves. Before the station of the head the brush is set down across the path: its hair lies across, and rounds
+/// the head. A tuft that is set down along the path leaves a point as thin as its tip. Frame: the character's square,
+/// origin at its lower left corner, so y is negative within it.
 stroke::StrokeSamples samples_of(std::span<const Station> stations, const BrushHand& hand, const Pace& pace = {});
 
 }  // namespace tuft::writer

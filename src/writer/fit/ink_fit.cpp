@@ -91,6 +91,7 @@ Errors errors_of(const std::vector<Station>& s, const FitTarget& target, const s
     const double part = cells.cell * cells.cell / spacing;
     double both = 0, either = 0, head = 0, tail = 0;
     Reach reach_head, reach_tail;
+    const std::size_t touch = trace.samples.size() - 1 - n;  // samples before that of the first station
     const Vec2 out_head = -direction_at(s, 0), out_tail = direction_at(s, n - 1);
     for (int j = 0; j < cells.height; ++j)
         for (int i = 0; i < cells.width; ++i) {
@@ -121,7 +122,8 @@ Errors errors_of(const std::vector<Station>& s, const FitTarget& target, const s
                 const auto later =
                     std::lower_bound(trace.samples.begin(), trace.samples.end(), when,
                                      [](const stroke::StrokeSample& a, double time) { return a.time < time; });
-                const std::size_t by = std::min<std::size_t>(std::size_t(later - trace.samples.begin()), n - 1);
+                const auto index = static_cast<std::size_t>(later - trace.samples.begin());
+                const std::size_t by = std::min(index - std::min(index, touch), n - 1);
                 if (std::abs(along[by] - along[k]) > kOwn) {
                     e.kick[by] -= error;
                     continue;

@@ -18,11 +18,14 @@ namespace {
 
 constexpr double kMargin = 80;                 // units of cells around a stroke
 constexpr float kUnder = 0.25f;                // weight of an error under another stroke
-constexpr std::uint64_t kVersion = 8;          // of the fit
+constexpr std::uint64_t kVersion = 9;          // of the fit
 constexpr std::size_t kMostStations = 20'000;  // of a stroke
+constexpr double kMiddlePressure = 0.4;        // that draws the median width
+constexpr double kCoarse = 3;                  // median widths of a line at that pressure: the brush is too coarse
+constexpr double kFine = 4.0 / 3;              // median widths that a brush must reach, or it is too fine
 
 double median_width(const stroke::LineWidths& widths, double unit) {
-    return std::max(2 * 21 * unit, widths.least());
+    return std::max(kMedianStroke * unit, widths.least());
 }
 
 std::string sized(const std::string& brush, double factor) {
@@ -46,6 +49,17 @@ Vec2 slanted(const Vec2& p, double slant) {
 }
 
 }  // namespace
+
+std::optional<std::string> size_that_fits(const std::string& brush, double side) {
+    const double width = kMedianStroke * side / kSide;
+    stroke::WidthTables tables;
+    const stroke::LineWidths& widths = tables.of(brush);
+    if (widths.at(kMiddlePressure) <= kCoarse * width && widths.most() >= kFine * width) return std::nullopt;
+    // Widths grow with the size, but for the film about the hair.
+    std::string name = sized(brush, width / widths.at(kMiddlePressure));
+    if (name == brush) return std::nullopt;
+    return name;
+}
 
 /// A stroke before its fit.
 struct Writer::Job {
@@ -112,8 +126,8 @@ Writer::Job Writer::job_of(const Glyph& glyph, std::size_t stroke) const {
 
 std::uint64_t Writer::seed_of(const BrushHand& with, const Pace& at) const {
     const std::string preset = brush::preset_toml(with.preset);
-    const double facts[] = {with.unit, at.speed, at.radius,
-                            at.ends,   at.ease,  static_cast<double>(options_.style.tries)};
+    const double facts[] = {with.unit, at.speed,  at.radius, at.ends,
+                            at.ease,   at.across, at.touch,  static_cast<double>(options_.style.tries)};
     return hash_bytes(facts, sizeof facts, hash_bytes(preset.data(), preset.size()));
 }
 
@@ -188,7 +202,9 @@ WrittenStroke Writer::motion(const std::vector<Station>& stations, const Glyph& 
         for (Station& s : own)
             s.half =
                 style.kind == HandKind::line ? style.half_width : median_width(with.widths, with.unit) / with.unit / 2;
-    out.trace = samples_of(own, with, pace());
+    Pace at = pace();
+    if (drawn) at.across = 0;
+    out.trace = samples_of(own, with, at);
     if (style.kind == HandKind::nib && glyph.single_line)
         for (stroke::StrokeSample& s : out.trace.samples) {
             s.roll = style.edge_angle;

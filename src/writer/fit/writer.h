@@ -75,6 +75,14 @@ class Writer {
     std::size_t n_fitted_ = 0;
 };
 
+inline constexpr double kMedianStroke = 42;  ///< units, median width of strokes
+
+/// Returns the name of the size of a brush that draws strokes of `kMedianStroke` of characters of `side` metres at a
+/// middle pressure, where the brush itself is too coarse (it draws lines of more than three times the width then) or
+/// too fine (its widest line is narrower than 4/3 of the width). None where it fits, and where no size in the range of
+/// presets is nearer.
+std::optional<std::string> size_that_fits(const std::string& brush, double side);
+
 /// Joins the stations of consecutive strokes over gaps up to `style.link` by thin curves, and rounds corners.
 std::vector<std::vector<Station>> linked(std::vector<std::vector<Station>> strokes, const Style& style);
 

@@ -168,6 +168,15 @@ double length_of(const Text& text) {
     return whole;
 }
 
+std::optional<std::string> size_for(const Text& text, const std::string& brush) {
+    const bool brushed = std::any_of(text.lines.begin(), text.lines.end(), [&](const std::vector<Glyph>& line) {
+        return std::any_of(line.begin(), line.end(), [&](const Glyph& glyph) {
+            return !glyph.strokes.empty() && glyph.area.empty() && !is_drawn(glyph, text.style);
+        });
+    });
+    return brushed ? size_that_fits(brush, text.layout.side) : std::nullopt;
+}
+
 void append_lines(std::vector<stroke::JournalEntry>& entries, const Text& text, const TextHand& hand,
                   const ProgressFn& progress) {
     Writer writer = writer_for(text, hand);

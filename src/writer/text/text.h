@@ -72,6 +72,10 @@ Vec2 extent_of(const Text& text);
 /// Returns the length of a text of one line along a path, parts of the side.
 double length_of(const Text& text);
 
+/// Returns the size of a brush that draws the text's strokes, where the brush itself is too coarse or too fine for them
+/// (`size_that_fits`). None for texts without strokes of a pointed brush.
+std::optional<std::string> size_for(const Text& text, const std::string& brush);
+
 /// How a text's strokes are made.
 struct TextHand {
     stroke::EntryOptions options;  ///< `brush`: preset; empty: the style's, in the size that suits the characters
