@@ -394,6 +394,80 @@ TEST(WideOutline, HairBetweenSplayedSpinesMeetsMidway) {
     }
 }
 
+/// Five strips of a row that stands at 45° to its hair and splays, whose sections have turned about it by `turn`.
+Recycled<Trail> aslant_row(double apart, double turn) {
+    constexpr double kHalf = 1e-3, kThick = 2e-4;
+    Recycled<Trail> trails;
+    for (int k = 0; k < 5; ++k) {
+        trails.push_back(lying_trail(k, apart * std::sqrt(0.5) * Vec2{k, k}, kHalf, kThick));
+        for (Cut& cut : trails.back().cuts) {
+            const Vec3 e = cut.e, m = cut.m;
+            cut.e = std::cos(turn) * e + std::sin(turn) * m;
+            cut.m = std::cos(turn) * m - std::sin(turn) * e;
+        }
+        if (k > 0) trails[static_cast<std::size_t>(k) - 1].openings.push_back({k, {0.0, 0.0}});
+    }
+    return trails;
+}
+
+/// A row that splays keeps one edge, whichever way it stands to its hair and its sections have turned: strips lie from
+/// midway to midway, end to end, on the line through their spines, and keep their area.
+TEST(WideOutline, ARowAslantToItsHairKeepsOneEdge) {
+    constexpr double kApart = 3e-3, kChord = Trail::kStripChord;
+    for (double turn = 0; turn < 1.4; turn += 0.1) {
+        Recycled<Trail> trails = aslant_row(kApart, turn);
+        fill_rows(trails);
+        for (std::size_t k = 1; k + 1 < trails.size(); ++k)
+            for (std::size_t i = 0; i < 2; ++i) {
+                const Cut &cut = trails[k].cuts[i], &next = trails[k + 1].cuts[i];
+                EXPECT_NEAR(glm::length(glm::cross(cut.broad(), cut.thick())), 1e-3 * 2e-4, 1e-16) << turn;
+                EXPECT_NEAR(cut.broad().z, 0, 1e-15) << turn;
+                const Vec2 end = cut.centre + kChord * Vec2(cut.broad());
+                const Vec2 wanted =
+                    (static_cast<double>(k) + 0.5) * kApart * std::sqrt(0.5) * Vec2{1, 1} + Vec2{i == 0 ? 1e-3 : 0, 0};
+                EXPECT_NEAR(glm::distance(end, wanted), 0, 1e-12) << turn;
+                if (k + 2 < trails.size()) {
+                    EXPECT_NEAR(glm::distance(end, next.centre - kChord * Vec2(next.broad())), 0, 1e-12) << turn;
+                }
+            }
+    }
+}
+
+/// Hair whose ends lie apart because it is longer keeps its own edge, and widens: a row of a filbert's toe.
+TEST(WideOutline, HairThatIsLongerKeepsItsOwnEdge) {
+    constexpr double kLength = 20e-3, kLonger = 2e-3, kAside = 1.5e-3;
+    Recycled<Trail> trails{lying_trail(0, {0, 0}, 1e-3, 2e-4), lying_trail(1, {kLonger, 2 * kAside}, 1e-3, 2e-4)};
+    trails[1].length += kLonger / kLength;
+    trails[0].openings.push_back({1, {0.0, 0.0}});
+    fill_rows(trails);
+    for (const Cut& cut : trails[0].cuts) {
+        const Vec2 end = cut.centre + Trail::kStripChord * Vec2(cut.broad());
+        EXPECT_NEAR(end.y, kAside, 1e-12);
+        EXPECT_NEAR(Vec2(cut.broad()).x, 0, 1e-15);
+    }
+}
+
+/// A stiff blade of the length ℓ that is drawn round a circle of radius R, along it at its middle, marks a stripe wider
+/// by ℓ²/8R: the sagitta of its ends.
+TEST(WideOutline, AStiffBladeInACurveWidensByItsSagitta) {
+    constexpr double kRadius = 60e-3, kWidth = 1.2e-3;
+    for (const double length : {10e-3, 20e-3, 30e-3}) {
+        Trail blade = lying_trail(0, {0, 0}, 0.5 * kWidth / Trail::kStripChord, 2e-4);
+        blade.cuts[0].centre.x = 0.5 * length;
+        blade.cuts[1].centre.x = -0.5 * length;
+        double least = 1e9, most = 0;
+        for (const Outline& o : outlines_of({&blade, 1}, 40))
+            for (const Vec2& p : curve_points(o, 8)) {
+                const double r = std::hypot(p.x, p.y + kRadius);
+                least = std::min(least, r), most = std::max(most, r);
+            }
+        // The corners lie at √((R + w/2)² + ℓ²/4), 2.5 % less than by the first term at 30 mm; a spline rounds them by
+        // up to 0.03 mm.
+        const double sagitta = length * length / (8 * kRadius);
+        EXPECT_NEAR(most - least - kWidth, sagitta, 0.03 * sagitta + 3e-5) << length;
+    }
+}
+
 /// Between two poses of hair that leapt, trails follow each other by less than 0.4 of their extent, from the one to
 /// the other.
 TEST(WideOutline, NoGapIsLeftWhereHairLeapt) {

@@ -120,6 +120,28 @@ TEST(ContactNodes, EachNodeHasTheHairOverIt) {
     EXPECT_FALSE(is_mixed(one)) << "the same mixture, however much of it";
 }
 
+// Hair that touches along one edge of the patch, and at one corner beyond it: ink under a row comes from the hair
+// before or behind it, whatever is nearer beside it.
+TEST(ContactNodes, WithoutHairARowTakesThatOfItsColumn) {
+    const Reservoir tuft = two_inks();
+    const ContactGrid grid{.step = {1e-3, 1e-3}};
+    const auto at = [](int i, int j) { return Vec2{1e-3 * i, 1e-3 * j}; };
+    std::vector<HairSample> samples;
+    for (int j = 0; j < kAcross; ++j) samples.push_back({0, at(kAlong - 1, j), 1, 1});
+    samples.push_back({1, at(0, kAcross - 1), 1, 1});
+    const auto bundle_at = [&](NodesWithoutHair rule, int node) {
+        const NodeContact nodes = node_contact(tuft, grid, samples, {}, rule);
+        EXPECT_EQ(nodes.of(node).size(), 1u);
+        return nodes.of(node)[0].cell / tuft.n_cells();
+    };
+    for (int i = 0; i + 1 < kAlong; ++i) {
+        for (int j = 0; j + 1 < kAcross; ++j)
+            EXPECT_EQ(bundle_at(NodesWithoutHair::column, i * kAcross + j), 0u) << i << ' ' << j;
+        EXPECT_EQ(bundle_at(NodesWithoutHair::column, i * kAcross + kAcross - 1), i < 2 ? 1u : 0u) << i;
+    }
+    EXPECT_EQ(bundle_at(NodesWithoutHair::nearest, kAcross - 2), 1u);
+}
+
 TEST(ContactNodes, WhatTheNodesGiveAndTakeIsConserved) {
     Reservoir tuft = two_inks();
     const NodeContact nodes = node_contact(tuft, patch(), straight_hair(tuft), {});

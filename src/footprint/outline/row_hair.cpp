@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "core/ease.h"
 #include "footprint/outline/cuts.h"
@@ -10,42 +12,93 @@ namespace {
 
 constexpr double kMostSpread = 3;    // times its width, that a strip is spread to one side
 constexpr double kGives = 0.3;       // of it, up to which hair that touches its neighbours is not spread wholly
-constexpr double kAlongBroad = 0.7;  // cosine from a section's wide axis to its broad side from which they are one
+constexpr double kOneLength = 0.01;  // of the tuft's length, by which spines of one length differ at most
+// Cosine from a section's wide axis to its broad side up to which it stands on its edge, and from which on it does not.
+constexpr double kOnEdge = 0.6, kOnBroadSide = 0.8;
+// Sine of the angle between a row and its hair up to which hair is not spread: there it lies on its neighbour's.
+constexpr double kAlongRow = 0.2, kAcrossRow = 0.5;
 
-/// Half the broad side of a section of a strip, metres, on the surface.
-Vec2 broad_half(const Cut& cut) {
-    return Trail::kStripChord * Vec2(cut.broad());
-}
-
-/// Factors on both halves of a section, towards its broad axis and against it.
-struct Spread {
-    double plus = 1, minus = 1;
-
-    /// Takes the half that faces a neighbour as far as midway to it.
-    void reach(const Cut& own, const Cut& beside) {
-        const Vec2 half = broad_half(own), to = 0.5 * (beside.centre - own.centre);
-        const double size = glm::dot(half, half);
-        if (!(size > 1e-12)) return;
-        const double part = glm::dot(to, half) / size;
-        double& factor = part > 0 ? plus : minus;
-        const double beyond = std::min(std::abs(part), kMostSpread) - 1;
-        factor = std::max(factor, 1 + beyond * smooth_step(beyond / kGives));
-    }
+/// Broad half of a section on one side of its spine, metres, (u, v, height): `to` by `part` in place of its own.
+struct Half {
+    Vec3 to{0};
+    double part = 0;
 };
 
-void spread_section(Cut& cut, const Spread& spread) {
-    if (std::abs(cut.turn.x) < kAlongBroad) return;  // it stands on its edge
-    const double wider = 0.5 * (spread.plus + spread.minus);
-    cut.centre += 0.5 * (spread.plus - spread.minus) * broad_half(cut);
-    cut.a *= wider;
-    cut.b /= wider;
+/// Both halves of a section, towards its broad axis and against it.
+struct Halves {
+    Half plus, minus;
+    double widens = 0;  ///< 0–1: it only widens, at its own height
+};
+
+/// Direction across a section, unit: that of its hair.
+Vec3 hair_of(const Cut& cut) {
+    const Vec3 normal = glm::cross(cut.e, cut.m);
+    const double size = glm::length(normal);
+    return size > 0 ? normal / size : Vec3{0};
+}
+
+/// The half that reaches midway to a neighbour, where that is further than the section is wide itself. `differ`: of the
+/// lengths of both hairs, 0–1; then what touches lies apart along the hair for that, and a section only widens, unless
+/// it stands on its edge.
+Half half_to(const Cut& own, const Cut& beside, double differ) {
+    const Vec3 between(0.5 * (beside.centre - own.centre), 0), broad = own.broad();
+    const double size = glm::dot(Vec2(broad), Vec2(broad));
+    const Vec3 along = size > 1e-18 ? glm::dot(between, broad) / size * broad : Vec3{0};
+    const Vec3 midway = glm::mix(between, along, differ);
+    const double width = Trail::kStripChord * glm::length(own.broad()), distance = glm::length(midway);
+    if (!(width > 1e-9) || distance <= width) return {};
+    const double beyond = std::min(distance / width, kMostSpread) - 1;
+    const double across = glm::length(glm::cross(hair_of(own), midway / distance));
+    const double lies = smooth_step((std::abs(own.turn.x) - kOnEdge) / (kOnBroadSide - kOnEdge));
+    return {std::min(1.0, kMostSpread * width / distance) / Trail::kStripChord * midway,
+            smooth_step(beyond / kGives) * smooth_step((across - kAlongRow) / (kAcrossRow - kAlongRow)) *
+                std::lerp(1.0, lies, differ)};
+}
+
+/// Gives a section other axes of its hair: their ellipse, of the axes that differ least from its own. `widens`: as in
+/// Halves.
+void set_axes(Cut& cut, const Vec3& broad, const Vec3& thick, double widens) {
+    using std::numbers::pi;
+    const double own = std::atan2(-cut.turn.y, cut.turn.x);
+    const double across = 2 * glm::dot(broad, thick), more = glm::dot(broad, broad) - glm::dot(thick, thick);
+    double turn = 0.5 * std::atan2(across, more);
+    turn += 0.5 * pi * std::round((own - turn) / (0.5 * pi));
+    const Vec3 e = std::cos(turn) * broad + std::sin(turn) * thick, m = std::cos(turn) * thick - std::sin(turn) * broad;
+    const double a = glm::length(e), b = glm::length(m);
+    if (!(std::max(a, b) > 1e-9)) return;
+    const Vec3 hair = hair_of(cut);
+    const double before = cut.half_height();
+    cut.a = a;
+    cut.b = b;
+    // The cap of an edge ends without thickness.
+    cut.e = a > 1e-9 ? e / a : glm::cross(m / b, hair);
+    cut.m = b > 1e-9 ? m / b : glm::cross(hair, cut.e);
+    cut.turn = {std::cos(turn), -std::sin(turn)};
+    // What comes to lie flat keeps the part of its height that is on the surface.
+    if (before > 0) cut.z *= std::lerp(cut.half_height() / before, 1.0, widens);
+}
+
+/// Takes the halves where they lie, at constant area.
+void spread_section(Cut& cut, const Halves& halves) {
+    const auto& [plus, minus, widens] = halves;
+    if (plus.part <= 0 && minus.part <= 0) return;
+    const Vec3 own = cut.broad(), thick = cut.thick(), hair = hair_of(cut);
+    const Vec3 up = glm::mix(own, plus.to, plus.part), down = glm::mix(-own, minus.to, minus.part);
+    const Vec3 broad = 0.5 * (up - down);
+    const double width = std::max(glm::length(broad), glm::length(own) / kMostSpread);
+    const Vec3 across = glm::cross(hair, broad);
+    const double size = glm::length(across);
+    if (!(size > 1e-9)) return;
+    const double area = glm::length(glm::cross(own, thick));
+    cut.centre += 0.5 * Trail::kStripChord * Vec2(up + down);
+    set_axes(cut, broad, area / (width * size) * across, widens);
 }
 
 }  // namespace
 
 void fill_rows(Recycled<Trail>& trails) {
-    Recycled<Recycled<Spread>> spread;
-    for (const Trail& trail : trails) spread.emplace_back(trail.cuts.size());
+    Recycled<Recycled<Halves>> halves;
+    for (const Trail& trail : trails) halves.emplace_back(trail.cuts.size());
     for (std::size_t k = 0; k < trails.size(); ++k)
         for (std::size_t l = 0; l < trails.size(); ++l) {
             const auto& openings = trails[k].openings;
@@ -53,13 +106,16 @@ void fill_rows(Recycled<Trail>& trails) {
                 return opening.branch == trails[l].branch;
             });
             if (!beside || !trails[k].strip || trails[k].cuts.size() != trails[l].cuts.size()) continue;
+            const double differ = smooth_step(std::abs(trails[l].length - trails[k].length) / kOneLength);
             for (std::size_t i = 0; i < trails[k].cuts.size(); ++i) {
-                spread[k][i].reach(trails[k].cuts[i], trails[l].cuts[i]);
-                spread[l][i].reach(trails[l].cuts[i], trails[k].cuts[i]);
+                const Cut &p = trails[k].cuts[i], &q = trails[l].cuts[i];
+                for (Halves* h : {&halves[k][i], &halves[l][i]}) h->widens = std::max(h->widens, differ);
+                halves[k][i].plus = half_to(p, q, differ);
+                halves[l][i].minus = half_to(q, p, differ);
             }
         }
     for (std::size_t k = 0; k < trails.size(); ++k)
-        for (std::size_t i = 0; i < trails[k].cuts.size(); ++i) spread_section(trails[k].cuts[i], spread[k][i]);
+        for (std::size_t i = 0; i < trails[k].cuts.size(); ++i) spread_section(trails[k].cuts[i], halves[k][i]);
 }
 
 }  // namespace tuft::footprint

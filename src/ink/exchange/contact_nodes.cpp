@@ -26,13 +26,14 @@ Between cells_at(const ReservoirLayout& layout, double along) {
     return {n - 2, 1};
 }
 
-int nearest_with_hair(const std::array<double, kNodes>& sums, int node) {
+/// `aside`: weight of a distance across the patch over one along it, squared.
+int nearest_with_hair(const std::array<double, kNodes>& sums, int node, int aside) {
     int best = -1, least = std::numeric_limits<int>::max();
     for (int k = 0; k < kNodes; ++k) {
         const int i = k / kAcross - node / kAcross, j = k % kAcross - node % kAcross;
-        if (sums[k] > 0 && i * i + j * j < least) {
+        if (const int distance = i * i + aside * j * j; sums[k] > 0 && distance < least) {
             best = k;
-            least = i * i + j * j;
+            least = distance;
         }
     }
     return best;
@@ -41,7 +42,7 @@ int nearest_with_hair(const std::array<double, kNodes>& sums, int node) {
 }  // namespace
 
 NodeContact node_contact(const Reservoir& tuft, const ContactGrid& grid, std::span<const HairSample> samples,
-                         const ContactCells& contact) {
+                         const ContactCells& contact, NodesWithoutHair rule) {
     const std::size_t cells = tuft.n_cells(), n = tuft.content.size();
     std::vector<double> weight(kNodes * n, 0);
     std::array<double, kNodes> sums{};
@@ -63,7 +64,9 @@ NodeContact node_contact(const Reservoir& tuft, const ContactGrid& grid, std::sp
     }
     NodeContact out;
     for (int node = 0; node < kNodes; ++node) {
-        const int from = sums[node] > 0 ? node : nearest_with_hair(sums, node);
+        const int from = sums[node] > 0
+                             ? node
+                             : nearest_with_hair(sums, node, rule == NodesWithoutHair::column ? kAlong * kAlong : 1);
         for (std::uint32_t i = 0; i < n; ++i) {
             const double part = from >= 0             ? weight[static_cast<std::size_t>(from) * n + i] / sums[from]
                                 : contact.size() == n ? static_cast<double>(contact[i])

@@ -41,11 +41,15 @@ using NodeContents = std::array<Reservoir::Content, kNodes>;
 /// Fractions of wet ink by plane and node, water last.
 using NodeMixes = std::array<std::array<float, kNodes>, Reservoir::kPlanes>;
 
+/// Source of a node without hair: the nearest node with hair, or first that of its own place across the patch. Ink
+/// under a row of hair comes from the hair in front of it or behind it, not from what is beside it.
+enum class NodesWithoutHair { nearest, column };
+
 /// Computes the cells over each node. Each sample contributes to the four nodes round it by their hats, and to the
-/// two cells of its bundle whose centres it lies between. A node without hair takes the cells of the nearest node
-/// with hair. Without any sample all nodes have the cells of `contact`.
+/// two cells of its bundle whose centres it lies between. A node without hair takes the cells of a node with hair,
+/// by `rule`. Without any sample all nodes have the cells of `contact`.
 NodeContact node_contact(const Reservoir& tuft, const ContactGrid& grid, std::span<const HairSample> samples,
-                         const ContactCells& contact);
+                         const ContactCells& contact, NodesWithoutHair rule = NodesWithoutHair::nearest);
 
 /// Returns true when the mixture differs between cells by more than rounding.
 bool is_mixed(const Reservoir& tuft);

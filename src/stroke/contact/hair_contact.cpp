@@ -154,7 +154,9 @@ void HairContact::place_nodes(Stamp& stamp, const TuftInHand& tuft, const footpr
     stamp.grid = ink::make_contact_grid(places, axis_);
     Recycled<ink::HairSample> samples;
     for (const footprint::HairContactPoint& t : points) samples.push_back({t.bundle, t.at, t.along, t.length});
-    nodes_ = ink::node_contact(tuft.brush.reservoir, stamp.grid, samples, cells_);
+    const bool in_row = glm::length(row) > 1e-6;
+    nodes_ = ink::node_contact(tuft.brush.reservoir, stamp.grid, samples, cells_,
+                               in_row ? ink::NodesWithoutHair::column : ink::NodesWithoutHair::nearest);
     if (hair.trails.empty()) return;
     const Recycled<footprint::Cut>& cuts = hair.trails.front().cuts;
     const Vec2 e(cuts[cuts.size() / 2].e);
