@@ -7,6 +7,7 @@
 
 #include "brush/preset/preset.h"
 #include "cli/device_trials.h"
+#include "cli/steps.h"
 #include "core/system/allocations.h"
 #include "core/system/interrupt.h"
 #include "haptic/loop.h"
