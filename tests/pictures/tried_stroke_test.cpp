@@ -31,23 +31,25 @@ void show(const TriedStroke& s, const std::string& name) {
         io::write_image(std::string(folder) + "/" + name + ".png", io::view_of(kWidth, kHeight, 3, s.rgb.data()));
 }
 
+class TriedStrokeOf : public testing::TestWithParam<std::string> {};
+
 // A picture that cuts the stroke off, or in which it is lost, does not show the brush.
-TEST(TriedStroke, OfEveryShippedBrushLiesWholeInItsPicture) {
-    for (const std::string& name : brush::list_presets()) {
-        const TriedStroke s = paint_tried_stroke(brush::load_preset(name));
-        show(s, name);
-        int dark = 0, border = 0;
-        for (int y = 0; y < kHeight; ++y)
-            for (int x = 0; x < kWidth; ++x) {
-                dark += is_dark(s, x, y);
-                border += is_dark(s, x, y) && (x == 0 || y == 0 || x == kWidth - 1 || y == kHeight - 1);
-            }
-        EXPECT_EQ(border, 0) << name;
-        // A line of two pixels along the whole picture is 2.5 % of it.
-        EXPECT_GT(dark, 0.02 * kWidth * kHeight) << name;
-        EXPECT_LT(dark, 0.6 * kWidth * kHeight) << name;
-    }
+TEST_P(TriedStrokeOf, EachShippedBrushLiesWholeInItsPicture) {
+    const std::string& name = GetParam();
+    const TriedStroke s = paint_tried_stroke(brush::load_preset(name));
+    show(s, name);
+    int dark = 0, border = 0;
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            dark += is_dark(s, x, y);
+            border += is_dark(s, x, y) && (x == 0 || y == 0 || x == kWidth - 1 || y == kHeight - 1);
+        }
+    EXPECT_EQ(border, 0);
+    // A line of two pixels along the whole picture is 2.5 % of it.
+    EXPECT_GT(dark, 0.02 * kWidth * kHeight);
+    EXPECT_LT(dark, 0.6 * kWidth * kHeight);
 }
+INSTANTIATE_TEST_SUITE_P(, TriedStrokeOf, testing::ValuesIn(brush::list_presets()));
 
 // Stored by the content of the preset, it must follow from that alone.
 TEST(TriedStroke, OfOnePresetIsTheSameToTheBit) {
