@@ -261,11 +261,11 @@ double surface_distance(const Step& w, const brush::TuftState& tuft) {
     return std::max(best, 0.0);
 }
 
-/// Where to look for the frame's origin: it goes with the hair and drifts to the middle of the
-/// contact over half a radius of travel, so that it does not jump when sections come and go.
-Vec3 follow_centre(const Step& w, const Memory& memory, const Vec3& travel, const Vec3& middle) {
+/// A place that goes with the hair from `last` and drifts to the middle of the contact over half a radius of travel, so
+/// that it does not jump when sections come and go.
+Vec3 follow_middle(const Step& w, const Memory& memory, const Vec3& last, const Vec3& travel, const Vec3& middle) {
     if (!memory.touching) return middle;
-    const Vec3 moved_on = memory.origin + travel;
+    const Vec3 moved_on = last + travel;
     const double moved = std::max(glm::length(travel), glm::length(w.pose.position - memory.root));
     if (glm::length(middle - moved_on) > 4 * w.radius) return middle;
     return moved_on + (1 - std::exp(-moved / (0.5 * w.radius))) * (middle - moved_on);
@@ -274,6 +274,7 @@ Vec3 follow_centre(const Step& w, const Memory& memory, const Vec3& travel, cons
 /// Sums over the touching sections, weighted by how deep they reach into the surface.
 struct ContactSums {
     Vec3 origin{0}, travel{0};              // metres, not divided by `weight`
+    Vec3 normal{0};                         // of the planes, not divided by `weight`
     double weight = 0;                      // m²
     double gap = 0;                         // metres between the surface and the section nearest to it
     const NodeContact* heaviest = nullptr;  // of the section of the greatest weight
@@ -302,6 +303,7 @@ ContactSums sum_sections(const Recycled<Recycled<NodeContact>>& contacts, const 
             const double share = 0.5 * glm::length(sections[next].centre - sections[prev].centre);
             const double weight = std::max(0.0, 1e-5 - under) * share;
             out.origin += weight * node.plane.origin;
+            out.normal += weight * node.plane.normal;
             if (!before.empty()) out.travel += weight * (centres[k] - before[k]);
             out.weight += weight;
             if (weight > most) {
@@ -311,6 +313,33 @@ ContactSums sum_sections(const Recycled<Recycled<NodeContact>>& contacts, const 
         }
     }
     return out;
+}
+
+/// The part of `v` along a plane with the normal n, of any length.
+Vec3 along_plane(const Vec3& v, const Vec3& n) {
+    const double size2 = glm::dot(n, n);
+    return size2 > 0 ? v - (glm::dot(v, n) / size2) * n : v;
+}
+
+/// The surface under the middle of the touching hair: where the hair goes on from the last frame, which lies on the
+/// surface. Over a gap that place comes back to the lip at every step that is shorter than half of the gap, and the ink
+/// with it, while the hair goes on: there it is where the hair went, not moved onto the surface meanwhile.
+NodeContact find_middle(const Step& w, Memory& memory, const Vec3& travel, const ContactSums& sums) {
+    constexpr double kBehind = 0.05;  // of the radius, along the surface; off it both differ over any curved one
+    const Vec3 middle = sums.origin / sums.weight;
+    const auto under = [&](const Vec3& p) {
+        return find_node_contact(w.surface, {p, sums.heaviest->outside, sums.heaviest->side}, w.search);
+    };
+    const Vec3 on = follow_middle(w, memory, memory.origin, travel, middle);
+    memory.centre = follow_middle(w, memory, memory.centre, travel, middle);
+    if (glm::length(along_plane(memory.centre - on, sums.normal)) > kBehind * w.radius) {
+        const NodeContact lip = under(memory.centre);
+        const Vec3 off = memory.centre - lip.plane.origin, aside = along_plane(off, sums.normal);
+        // In a gutter the middle is above the walls.
+        const bool above = glm::dot(off, sums.normal) > glm::length(aside) * glm::length(sums.normal);
+        if (lip.triangle != kNone && !above) return lip;
+    }
+    return under(on);
 }
 
 /// Finds the contact frame under the middle of the touching sections, and the distance to touch. The weights of the
@@ -330,9 +359,7 @@ void find_frame(const Step& w, const Recycled<Recycled<NodeContact>>& contacts, 
     if (sums.gap > w.options.tolerance) result.distance = surface_distance(w, result.tuft);
     NodeContact at = *sums.lowest;
     if (sums.weight > 0) {
-        const Vec3 centre = follow_centre(w, memory, result.travel, sums.origin / sums.weight);
-        const NodeContact middle =
-            find_node_contact(w.surface, {centre, sums.heaviest->outside, sums.heaviest->side}, w.search);
+        const NodeContact middle = find_middle(w, memory, result.travel, sums);
         if (middle.triangle != kNone) at = middle;
     }
     result.triangle = at.triangle;
@@ -341,6 +368,7 @@ void find_frame(const Step& w, const Recycled<Recycled<NodeContact>>& contacts, 
     result.frame = make_frame(at.plane.origin, at.plane.normal, memory.heading);
     memory.heading = result.frame.t;
     memory.origin = result.frame.origin;
+    if (!(sums.weight > 0)) memory.centre = memory.origin;
 }
 
 Vec3 device_force(const brush::Preset& preset, const Result& result, const Options& options) {

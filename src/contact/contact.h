@@ -36,6 +36,7 @@ struct Memory {
     double side = 1;         ///< -1: on the back of an open sheet
     Vec3 heading{1, 0, 0};   ///< unit, t of the last contact frame
     Vec3 origin{0};          ///< of the last contact frame
+    Vec3 centre{0};          ///< of the touching hair, followed like `origin` but not moved onto the surface
     Recycled<Vec3> centres;  ///< of all sections at the last sample, metres
 };
 

@@ -130,16 +130,19 @@ NodeContact find_node_contact(const mesh::SurfaceQuery& surface, const NodeQuery
     const auto q = surface.closest_point(front, std::min(within, options.reach));
     if (!q) return out;
     const Vec3 off = node - q->position;
-    if (!behind) {
-        // Clearly in front of an open sheet's back.
-        const double over = out.side * glm::dot(off, q->face_normal);
-        if (over < -0.5 * q->distance && q->distance > options.lift &&
-            !before_other_face(surface.mesh(), *q, out.side, off))
-            out.side = -out.side;
+    bool over_edge = false;  // in front of it, however its other face lies
+    if (!behind && q->distance > options.lift) {
+        const double most = -0.5 * q->distance;
+        const bool from_back = out.side * glm::dot(off, q->face_normal) < most;
+        if (from_back || out.side * glm::dot(off, q->normal) < most)
+            over_edge = before_other_face(surface.mesh(), *q, out.side, off);
+        if (from_back && !over_edge) out.side = -out.side;  // clearly in front of an open sheet's back
     }
     out.triangle = q->triangle;
     out.plane.origin = q->position;
-    out.plane.normal = behind ? out.side * q->normal : plane_normal(*q, out.side, off, options.lift);
+    out.plane.normal = behind      ? out.side * q->normal
+                       : over_edge ? off / q->distance
+                                   : plane_normal(*q, out.side, off, options.lift);
     out.height = glm::dot(off, out.plane.normal);
     out.wedge = out.plane;
     if (const auto edge = find_edge(surface.mesh(), *q)) {

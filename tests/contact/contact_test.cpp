@@ -435,6 +435,54 @@ TEST(NodeContact, NormalTurnsSmoothlyOverAConvexEdge) {
     EXPECT_NEAR(before.x, 1, 1e-6);
 }
 
+// A point that comes to an edge from outside is in front of it, though one of its two faces is seen from behind: its
+// height is its distance. Between faces that stand 20 degrees apart directions lie up to 160 degrees off a normal.
+TEST(NodeContact, BesideASharpEdgeAPointIsInFrontWhicheverFaceIsNearest) {
+    constexpr double kSlope = 80 * std::numbers::pi / 180;
+    const mesh::TriangleMesh m = shapes::roof(kSlope);
+    const mesh::SurfaceQuery surface(m);
+    for (const double distance : {1e-3, 0.02})
+        for (int i = -19; i <= 19; ++i)
+            for (const double y : {0.0, 0.0007, 0.0013}) {
+                const double a = kSlope * i / 20;
+                const Vec3 p = Vec3{0, y, 0} + distance * Vec3{std::sin(a), 0, std::cos(a)};
+                const NodeContact s =
+                    find_node_contact(surface, {p, p + 0.001 * Vec3{std::sin(a), 0, std::cos(a)}}, {});
+                EXPECT_EQ(s.side, 1);
+                // 1 - cos of the angle at which the blend from the face's own normal starts.
+                EXPECT_NEAR(s.height, distance, 0.03 * distance) << "at " << a << ", y " << y;
+            }
+}
+
+// Where the patch passes over a gap depends on the hand's path, not on how finely it is sampled: at all spacings the
+// frame goes over to the far plate with the hand at the same place, to one spacing of the coarsest.
+TEST(Contact, TheFrameCrossesAGapAtTheSamePlaceAtEverySpacing) {
+    constexpr double kGap = 3e-3, kCoarsest = 0.4e-3;
+    const Vec3 half{0.05, 0.05, 0.005};
+    const mesh::TriangleMesh plate = shapes::plate(half);
+    mesh::TriangleMesh m;
+    for (const double side : {-1.0, 1.0}) {
+        const auto first = static_cast<std::uint32_t>(m.positions.size());
+        for (const Vec3f& p : plate.positions)
+            m.positions.emplace_back(Vec3(p) + Vec3{side * (half.x + 0.5 * kGap), 0, -half.z});
+        for (const auto& t : plate.triangles) m.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+    shapes::finish(m);
+    const mesh::SurfaceQuery surface(m);
+    double least = 1, most = -1;
+    for (const double spacing : {0.05e-3, 0.1e-3, 0.2e-3, kCoarsest}) {
+        ContactStage hand(surface, "wolf-medium");
+        double crossed = 1;
+        for (double depth = 0; depth < 0.006; depth += spacing) hand.move({-0.02, 0.0003, -depth});
+        for (double x = -0.02; x < 0.04 && crossed > 0.9; x += spacing)
+            if (hand.move({x, 0.0003, -0.006}).frame.origin.x > 0) crossed = x;
+        ASSERT_LT(crossed, 0.9) << "at " << spacing;
+        least = std::min(least, crossed);
+        most = std::max(most, crossed);
+    }
+    EXPECT_LT(most - least, kCoarsest);
+}
+
 TEST(Contact, AFerruleThatWouldEnterTheObjectIsHeldOnItsSurface) {
     // A block of 200 × 200 × 100 mm, from above into its middle; the tuft, 20 or 32 mm long, once made 2,000 N there.
     const mesh::TriangleMesh block = shapes::plate({0.1, 0.1, 0.05});

@@ -225,6 +225,7 @@ TEST_F(CarArch, NeitherDoesOneFromTheNoseNorAWideOne) {
         double from, to, z;
     };
     for (const Case& c : {Case{"wolf-small", 0.519, 0.219, 0.080}, Case{"wolf-medium", 0.519, 0.219, 0.080},
+                          Case{"wolf-medium", 0.219, 0.519, 0.070}, Case{"wolf-medium", 0.519, 0.219, 0.070},
                           Case{"sword-8", 0.519, 0.219, 0.130}}) {
         const Inked inked = paint(c.brush, c.from, c.to, c.z);
         EXPECT_GT(inked.before, 0) << c.brush;
