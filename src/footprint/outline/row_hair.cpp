@@ -17,6 +17,7 @@ constexpr double kOneLength = 0.01;  // of the tuft's length, by which spines of
 constexpr double kOnEdge = 0.6, kOnBroadSide = 0.8;
 // Sine of the angle between a row and its hair up to which hair is not spread: there it lies on its neighbour's.
 constexpr double kAlongRow = 0.2, kAcrossRow = 0.5;
+constexpr double kTurning = 0.15;  // cosine from a broad axis to its row below which it is between both directions
 
 /// Broad half of a section on one side of its spine, metres, (u, v, height): `to` by `part` in place of its own.
 struct Half {
@@ -84,7 +85,7 @@ void set_axes(Cut& cut, const Vec3& broad, const Vec3& thick, double widens) {
 double way_along(const Vec2& row, const Vec3& broad, double part) {
     const double size = glm::length(row) * glm::length(broad);
     const double cosine = size > 0 ? glm::dot(row, Vec2(broad)) / size : 1;
-    return std::lerp(cosine < 0 ? -1.0 : 1.0, std::clamp(cosine / kAcrossRow, -1.0, 1.0), part);
+    return std::lerp(cosine < 0 ? -1.0 : 1.0, std::clamp(cosine / kTurning, -1.0, 1.0), part);
 }
 
 /// Takes the halves where they lie, at constant area.
