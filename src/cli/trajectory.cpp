@@ -42,7 +42,12 @@ Vec3 force_at(const std::vector<stroke::ForceRecord>& forces, double time) {
 
 /// The poses of a stroke as the document leads the brush.
 std::vector<brush::Pose> poses_of(const stroke::PaintStroke& s, const stroke::Document& painting) {
-    if (!s.trace.flat) return stroke::spatial_poses(s.trace);
+    if (!s.trace.flat) {
+        std::vector<brush::Pose> poses = stroke::spatial_poses(s.trace);
+        stroke::GestureFilter state;
+        for (brush::Pose& pose : poses) pose = stroke::steady(state, pose, s.settings);
+        return poses;
+    }
     const mesh::SurfaceQuery& query = *painting.model().query;
     return stroke::hand_path(query, stroke::steady(s.trace, s.settings),
                              painting.materials().holder(s.brush, query.mesh(), s.settings.compensate_tip_lag))
@@ -80,6 +85,7 @@ Painted paint_strokes(const std::vector<stroke::JournalEntry>& entries, stroke::
         if (const stroke::Mask* mask = painting.masks().table().find(s->mask)) own.names.mask = mask->name;
         own.before = std::exchange(before, {});
         own.samples.clear();
+        if (own.settings) own.settings->smooth = own.settings->stabilise = 0;  // the poses are steadied
         const brush::Preset& preset = painting.materials().brush(s->brush);
         motion::StrokePath path{.id = entry.id,
                                 .label = entry.label,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,7 +13,8 @@ namespace tuft::motion {
 /// A pose of the ferrule (position: middle of its mouth) and the expected force there.
 struct Waypoint {
     brush::Pose pose;
-    Vec3 force{0};  ///< newtons, of the surface on the tuft, model frame
+    Vec3 force{0};                    ///< newtons, of the surface on the tuft, model frame
+    std::optional<double> hand_time;  ///< seconds on the hand's clock, in a stroke; `pose.time` is the tool's
 };
 
 /// Limits of the tool.

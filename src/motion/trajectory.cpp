@@ -9,12 +9,12 @@
 namespace tuft::motion {
 namespace {
 
-constexpr double kPathTolerance = 5e-6;    // metres
-constexpr double kTurnTolerance = 0.0017;  // radians, 0.1°
-constexpr std::size_t kLongestRun = 64;    // points left out in a row
-constexpr double kCheckStep = 2e-3;        // metres
-constexpr double kTravelStep = 5e-3;       // metres between waypoints
-constexpr double kFree = 1e-3;             // metres of the holder's first ball above the mouth that may touch
+constexpr double kPathTolerance = 5e-6;  // metres
+constexpr double kPaceTolerance = 1e-3;  // seconds
+constexpr std::size_t kLongestRun = 64;  // points left out in a row
+constexpr double kCheckStep = 2e-3;      // metres
+constexpr double kTravelStep = 5e-3;     // metres between waypoints
+constexpr double kFree = 1e-3;           // metres of the holder's first ball above the mouth that may touch
 
 /// The tool: what moves with the ferrule.
 struct Tool {
@@ -111,8 +111,10 @@ std::vector<brush::Pose> path_round(const mesh::TriangleMesh& mesh, const Tool& 
     return corners;
 }
 
-/// Leaves out points that lie on the line between those that stay.
-std::vector<Waypoint> thinned(const std::vector<Waypoint>& points) {
+/// Leaves out points that lie on the line between those that stay, in space, at the unbent tip and on the hand's clock:
+/// hair trails by its speed, so that a pace lost is a tip elsewhere.
+std::vector<Waypoint> thinned(const std::vector<Waypoint>& points, double tuft_length) {
+    const double turn = kPathTolerance / tuft_length;
     std::vector<Waypoint> kept{points.front()};
     const auto fits = [&](std::size_t from, std::size_t to) {
         const brush::Pose &a = points[from].pose, &b = points[to].pose;
@@ -125,7 +127,8 @@ std::vector<Waypoint> thinned(const std::vector<Waypoint>& points) {
             if (t < last || t > 1) return false;  // the path turns back
             last = t;
             if (glm::length(a.position + t * d - p.position) > kPathTolerance ||
-                angle_between(glm::slerp(a.rotation, b.rotation, t), p.rotation) > kTurnTolerance)
+                angle_between(glm::slerp(a.rotation, b.rotation, t), p.rotation) > turn ||
+                std::abs(std::lerp(a.time, b.time, t) - p.time) > kPaceTolerance)
                 return false;
         }
         return true;
@@ -150,8 +153,11 @@ class Planner {
 
     void add(const StrokePath& stroke, std::size_t index) {
         const Tool tool{options_.holder, stroke.tuft_length, stroke.tuft_radius};
-        std::vector<Waypoint> points = thinned(stroke.points);
-        for (const Waypoint& p : points) check(stroke, p.pose);
+        std::vector<Waypoint> points = thinned(stroke.points, tool.tuft_length);
+        for (Waypoint& p : points) {
+            check(stroke, p.pose);
+            p.hand_time = p.pose.time - stroke.points.front().pose.time;
+        }
         const auto lifted = [&](const brush::Pose& pose) {
             return brush::Pose{pose.position + (stroke.tuft_length + options_.clearance) * up_of(pose), pose.rotation,
                                0};

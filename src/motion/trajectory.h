@@ -14,9 +14,9 @@ namespace tuft::motion {
 struct StrokePath {
     std::uint64_t id = 0;  ///< of its entry
     std::string label;
-    std::vector<Waypoint> points;
-    double tuft_length = 0.03;   ///< metres from the ferrule's mouth to the unbent tip
-    double tuft_radius = 0.004;  ///< metres
+    std::vector<Waypoint> points;  ///< `pose.time` is the hand's
+    double tuft_length = 0.03;     ///< metres from the ferrule's mouth to the unbent tip
+    double tuft_radius = 0.004;    ///< metres
 };
 
 /// The holder behind the ferrule: a cylinder about its axis, with round ends, from the mouth backwards.
@@ -58,11 +58,12 @@ struct MotionOptions {
 /// Distance of brush and holder from the model in travel, metres, at least.
 inline constexpr double kTravelGap = 0.003;
 
-/// Returns the trajectory of strokes in their order. A stroke's path is its own, without points within 5 µm and 0.1° of
-/// the line between their neighbours. Travel is straight where the whole tool stays `kTravelGap` clear of the model,
-/// sampled each 2 mm by closest points (Embree). Else it goes out along the axis, round the model on a sphere, and in
-/// again; it goes over the top where the sphere's path would pass below the model. Throws `Error` that names the stroke
-/// where the holder would hit the model, or no clear path leads to it.
+/// Returns the trajectory of strokes in their order. A stroke's path is its own, without points where mouth and unbent
+/// tip are within 5 µm of the line between their neighbours, and the hand's clock within 1 ms. Travel is straight where
+/// the whole tool stays `kTravelGap` clear of the model, sampled each 2 mm by closest points (Embree). Else it goes out
+/// along the axis, round the model on a sphere, and in again; it goes over the top where the sphere's path would pass
+/// below the model. Throws `Error` that names the stroke where the holder would hit the model, or no clear path leads
+/// to it.
 Trajectory plan(const mesh::SurfaceQuery& query, const std::vector<StrokePath>& strokes, const MotionOptions& options);
 
 }  // namespace tuft::motion

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
 
@@ -110,23 +111,61 @@ double overlap_of(const io::ImageF& a, const io::ImageF& b) {
     return static_cast<double>(both) / static_cast<double>(any);
 }
 
-TEST_F(Trajectories, ReadBackPaintTheSameTexels) {
-    const std::string project = bowl();
-    const auto amounts = [&](const std::string& from, const std::string& to) {
-        EXPECT_EQ(tuft("export " + from + " -o " + path(to) + " --map pigments --quiet").status, 0);
+class ReadBack : public Decals {
+  protected:
+    io::ImageF amounts(const std::string& project, const std::string& to) const {
+        EXPECT_EQ(tuft("export " + project + " -o " + path(to) + " --map pigments --quiet").status, 0);
         return io::read_image_float(path(to));
-    };
-    const io::ImageF painted = amounts(project, "painted.exr");
-    for (const std::string name : {"json", "csv"}) {
-        const std::string file = path("bowl." + name), again = path("again-" + name + ".tuft");
-        const test::Ran ran = tuft("trajectory " + project + " -o " + file + " --json");
-        ASSERT_EQ(ran.status, 0) << ran.err;
+    }
+    /// Overlap of a project on a model with what its trajectory, in a file of this extension, paints there.
+    double overlap(const std::string& project, const std::string& on, const std::string& extension,
+                   const std::string& options) const {
+        const std::string file = path("back." + extension), again = path("back.tuft");
+        fs::remove(again);
+        const test::Ran ran = tuft("trajectory " + project + " -o " + file + " --json " + options);
+        EXPECT_EQ(ran.status, 0) << ran.err;
         EXPECT_GT(nlohmann::json::parse(ran.out).at("largest_force_n").get<double>(), 0.001);
         const test::Ran back =
-            tuft("paint " + model("bowl.ply") + " --strokes " + file + " --atlas-size 1024 --quiet --project " + again);
-        ASSERT_EQ(back.status, 0) << back.err;
-        EXPECT_GE(overlap_of(painted, amounts(again, name + ".exr")), 0.99) << name;
+            tuft("paint " + model(on) + " --strokes " + file + " --atlas-size 1024 --quiet --project " + again);
+        EXPECT_EQ(back.status, 0) << back.err;
+        return overlap_of(amounts(project, "painted.exr"), amounts(again, "back.exr"));
     }
+};
+
+TEST_F(ReadBack, PaintsTheSameTexels) {
+    const std::string project = bowl();
+    for (const std::string extension : {"json", "csv"})
+        EXPECT_GE(overlap(project, "bowl.ply", extension, ""), 0.99) << extension;
+}
+
+// A hand that comes down and lifts at once, faster than a robot may: its tips are hairlines, which trail by their
+// speed.
+TEST_F(ReadBack, KeepsTheHandsPace) {
+    std::ofstream strokes(path("two.inkml"));
+    strokes << R"(<ink xmlns="http://www.w3.org/2003/InkML"><definitions><traceFormat xml:id="f">
+      <channel name="X" type="decimal" units="mm"/><channel name="Y" type="decimal" units="mm"/>
+      <channel name="P" type="decimal" min="0" max="1"/><channel name="T" type="decimal" units="ms"/>
+      </traceFormat><context xml:id="c" traceFormatRef="#f"/></definitions>)";
+    for (int k = 0; k < 2; ++k) {
+        strokes << R"(<trace contextRef="#c">)";
+        for (int i = 0; i <= 80; ++i) {
+            const double t = i / 80.0;
+            strokes << (i ? ", " : "") << 16 * t - 8 << ' ' << 7 * k - 3 + 2 * std::sin(6 * t) << ' '
+                    << 0.4 * std::sqrt(std::max(0.0, std::sin(3.14159 * t))) << ' ' << 10 * i;
+        }
+        strokes << "</trace>";
+    }
+    strokes << "</ink>";
+    strokes.close();
+    for (const std::string on : {"sphere.ply", "bowl.ply", "sheet.ply"})
+        for (const std::string brush : {"wolf-medium", "flat-12"}) {
+            const std::string project = path("hand.tuft");
+            fs::remove(project);
+            const test::Ran ran = tuft("paint " + model(on) + " --strokes " + path("two.inkml") + " --brush " + brush +
+                                       " --smooth 1 --atlas-size 1024 --quiet --project " + project);
+            ASSERT_EQ(ran.status, 0) << ran.err;
+            EXPECT_GE(overlap(project, on, "csv", "--max-acceleration 200"), 0.99) << on << ' ' << brush;
+        }
 }
 
 TEST_F(Trajectories, AreWrittenInEachLanguageAndRefusedWhereTheHolderHits) {

@@ -433,6 +433,25 @@ TEST(WideOutline, ARowAslantToItsHairKeepsOneEdge) {
     }
 }
 
+/// Sections of hair that is bent to the other side have turned by half a turn: the same hair, and spread likewise.
+TEST(WideOutline, SectionsTurnedByHalfATurnSpreadAsTheyWere) {
+    for (const double longer : {0.0, 0.1})
+        for (double turn = 0; turn < 1.4; turn += 0.2) {
+            Recycled<Trail> trails = aslant_row(3e-3, turn), turned = aslant_row(3e-3, turn + std::numbers::pi);
+            for (Recycled<Trail>* row : {&trails, &turned}) {
+                for (std::size_t k = 0; k < row->size(); ++k) (*row)[k].length += longer * static_cast<double>(k);
+                fill_rows(*row);
+            }
+            for (std::size_t k = 0; k < trails.size(); ++k) {
+                const Cut &cut = trails[k].cuts[0], &same = turned[k].cuts[0];
+                EXPECT_LT(glm::distance(cut.centre, same.centre), 1e-12) << turn << ' ' << longer;
+                EXPECT_LT(glm::length(cut.broad() + same.broad()), 1e-12) << turn << ' ' << longer;
+                EXPECT_LT(glm::length(cut.thick() + same.thick()), 1e-12) << turn << ' ' << longer;
+                EXPECT_NEAR(cut.z, same.z, 1e-12) << turn << ' ' << longer;
+            }
+        }
+}
+
 /// Hair whose ends lie apart because it is longer keeps its own edge, and widens: a row of a filbert's toe.
 TEST(WideOutline, HairThatIsLongerKeepsItsOwnEdge) {
     constexpr double kLength = 20e-3, kLonger = 2e-3, kAside = 1.5e-3;

@@ -150,6 +150,26 @@ TEST_F(TrajectoryFile, ATableReadsBackToItsDigits) {
     }
 }
 
+// The hand was twice as fast as the tool: a stroke takes the hand's clock where the file has it, else the tool's.
+TEST_F(TrajectoryFile, StrokesAreReadOnTheHandsClock) {
+    MotionProgram p = program(0.3);
+    std::vector<motion::Waypoint>& points = p.trajectory.moves[1].points;
+    for (std::size_t i = 0; i < points.size(); ++i) points[i].hand_time = 0.05 * static_cast<double>(i);
+    for (const char* extension : {".json", ".csv"}) {
+        file_.replace_extension(extension);
+        write_trajectory(file_, p);
+        const std::vector<stroke::RecordedStroke> read = read_trajectory(file_);
+        ASSERT_EQ(read.at(0).samples.size(), 3u);
+        for (std::size_t i = 0; i < 3; ++i)
+            EXPECT_NEAR(read[0].samples[i].time, 0.05 * static_cast<double>(i), 1e-6) << extension;  // six digits
+        std::filesystem::remove(file_);
+    }
+    const std::string start = "t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,hand_s\n1,0,0,0,1,0,0,0,";
+    EXPECT_EQ(parse_trajectory_csv(start + "\n3,1,0,0,1,0,0,0,\n", "log.csv")[0].samples[1].time, 2);
+    EXPECT_EQ(parse_trajectory_csv(start + "7\n3,1,0,0,1,0,0,0,8\n", "log.csv")[0].samples[1].time, 1);
+    EXPECT_THROW(parse_trajectory_csv(start + "7\n3,1,0,0,1,0,0,0,\n", "log.csv"), Error);
+}
+
 // A robot's log: other columns among them, in another order, by another program's line ends and quotes.
 TEST_F(TrajectoryFile, ATableOfAnotherProgramIsRead) {
     const std::string text =
@@ -190,7 +210,7 @@ TEST_F(TrajectoryFile, RefusesWhatItHasNotWritten) {
     EXPECT_TRUE(refused("[1,2"));
     EXPECT_TRUE(refused(std::string(100000, '[')));
     for (const auto& [what, by] : {std::pair<std::string, std::string>{"tuft-trajectory", "other"},
-                                   {"\"version\":1", "\"version\":2"},
+                                   {"\"version\":2", "\"version\":3"},
                                    {"\"stroke\":0", "\"stroke\":5"},
                                    {"\"points\":[[", "\"points\":[[1e999,"},
                                    {"\"points\":[[", "\"points\":[7,["}}) {

@@ -110,6 +110,41 @@ TEST(Plan, MovesFollowEachOtherAndKeepTheLimits) {
     EXPECT_GT(t.seconds(), 4);
 }
 
+/// A pose of a polyline at a time of the hand.
+brush::Pose at(const std::vector<Waypoint>& points, double time) {
+    std::size_t i = 1;
+    while (i + 1 < points.size() && *points[i].hand_time < time) ++i;
+    const double start = *points[i - 1].hand_time, t = (time - start) / (*points[i].hand_time - start);
+    const brush::Pose &a = points[i - 1].pose, &b = points[i].pose;
+    return {glm::mix(a.position, b.position, t), glm::slerp(a.rotation, b.rotation, t), time};
+}
+
+// A holder that leans back and forth while it goes straight on at an uneven pace. At the hand's times, the mouth stays
+// within 5 µm and what it covers in 1 ms, the tip within twice 5 µm and that: its own and the mouth's.
+TEST(Plan, PointsThatAreLeftOutMoveNeitherMouthNorTip) {
+    const mesh::TriangleMesh model = test::cylinder();
+    StrokePath stroke = wave(0, 0.001, 400, 2);
+    for (std::size_t i = 0; i < stroke.points.size(); ++i) {
+        const double t = static_cast<double>(i) / 399;
+        brush::Pose& pose = stroke.points[i].pose;
+        pose.position.z = 0.1 + 0.02 * (t + 0.1 * std::sin(6 * t));
+        pose.rotation = glm::angleAxis(0.2 * std::sin(9 * t), Vec3(0, 0, 1)) * pose.rotation;
+    }
+    const Trajectory t = plan(mesh::SurfaceQuery(model), {stroke}, {});
+    const std::vector<Waypoint>& kept = t.moves[1].points;
+    EXPECT_LT(kept.size(), stroke.points.size());
+    EXPECT_EQ(*kept.front().hand_time, 0);
+    EXPECT_EQ(*kept.back().hand_time, 2);
+    const double covered = 0.017 * 1e-3;  // metres, at the greatest speed
+    for (const Waypoint& p : stroke.points) {
+        const brush::Pose &own = p.pose, now = at(kept, own.time);
+        EXPECT_LT(glm::length(now.position - own.position), 5e-6 + covered);
+        const Vec3 off =
+            now.position + stroke.tuft_length * now.axis() - own.position - stroke.tuft_length * own.axis();
+        EXPECT_LT(glm::length(off), 2 * 5e-6 + 2 * covered);
+    }
+}
+
 // From one side of a closed cylinder to the other: rays along every step of tip, mouth and holder meet nothing.
 TEST(Plan, TravelIsClearOfTheModel) {
     const mesh::TriangleMesh model = test::cylinder();

@@ -104,8 +104,9 @@ void gather_trails(Recycled<Trail>& trails, double part);
 
 /// Spreads the sections of spines of a row as far as midway to their neighbours, flat on the surface and at constant
 /// area: hair that is set between two spines lies between them, X = (F_k + F_{k+1}) / 2 at its edge, at equal parts of
-/// what touches. A row that stands aslant to its hair so keeps one edge. To three times their width at most. Spines
-/// that differ in length widen only, along their own broad sides.
+/// what touches. A section turned by half a turn is spread as the same hair is. A row that stands aslant to its hair so
+/// keeps one edge. To three times their width at most. Spines that differ in length widen only, along their own broad
+/// sides.
 void fill_rows(Recycled<Trail>& trails);
 
 /// Adds the upright hair round the foot of the axis, by `foot.share`: a straight taper from the widest section to

@@ -17,6 +17,7 @@ constexpr double kOneLength = 0.01;  // of the tuft's length, by which spines of
 constexpr double kOnEdge = 0.6, kOnBroadSide = 0.8;
 // Sine of the angle between a row and its hair up to which hair is not spread: there it lies on its neighbour's.
 constexpr double kAlongRow = 0.2, kAcrossRow = 0.5;
+constexpr double kTurning = 0.15;  // cosine from a broad axis to its row below which it is between both directions
 
 /// Broad half of a section on one side of its spine, metres, (u, v, height): `to` by `part` in place of its own.
 struct Half {
@@ -24,9 +25,10 @@ struct Half {
     double part = 0;
 };
 
-/// Both halves of a section, towards its broad axis and against it.
+/// Both halves of a section, towards the spine that follows in its row and towards the one before it.
 struct Halves {
-    Half plus, minus;
+    Half next, last;
+    Vec2 row{0};        ///< metres, along the row from neighbour to neighbour
     double widens = 0;  ///< 0–1: it only widens, at its own height
 };
 
@@ -78,18 +80,29 @@ void set_axes(Cut& cut, const Vec3& broad, const Vec3& thick, double widens) {
     if (before > 0) cut.z *= std::lerp(cut.half_height() / before, 1.0, widens);
 }
 
+/// 1 where a section's broad axis points along its row, −1 against it; between, where it is spread by `part`, a section
+/// across its row has no side that is the outer one.
+double way_along(const Vec2& row, const Vec3& broad, double part) {
+    const double size = glm::length(row) * glm::length(broad);
+    const double cosine = size > 0 ? glm::dot(row, Vec2(broad)) / size : 1;
+    return std::lerp(cosine < 0 ? -1.0 : 1.0, std::clamp(cosine / kTurning, -1.0, 1.0), part);
+}
+
 /// Takes the halves where they lie, at constant area.
 void spread_section(Cut& cut, const Halves& halves) {
-    const auto& [plus, minus, widens] = halves;
-    if (plus.part <= 0 && minus.part <= 0) return;
-    const Vec3 own = cut.broad(), thick = cut.thick(), hair = hair_of(cut);
-    const Vec3 up = glm::mix(own, plus.to, plus.part), down = glm::mix(-own, minus.to, minus.part);
-    const Vec3 broad = 0.5 * (up - down);
-    const double width = std::max(glm::length(broad), glm::length(own) / kMostSpread);
+    const auto& [next, last, row, widens] = halves;
+    if (next.part <= 0 && last.part <= 0) return;
+    const Vec3 thick = cut.thick(), hair = hair_of(cut);
+    // Sections turn by half a turn where the tuft bends to the other side.
+    const double way = way_along(row, cut.broad(), std::max(next.part, last.part));
+    const Vec3 own = way * cut.broad();
+    const Vec3 up = glm::mix(own, next.to, next.part), down = glm::mix(-own, last.to, last.part);
+    const Vec3 broad = (way < 0 ? -0.5 : 0.5) * (up - down);
+    const double width = std::max(glm::length(broad), glm::length(cut.broad()) / kMostSpread);
     const Vec3 across = glm::cross(hair, broad);
     const double size = glm::length(across);
     if (!(size > 1e-9)) return;
-    const double area = glm::length(glm::cross(own, thick));
+    const double area = glm::length(glm::cross(cut.broad(), thick));
     cut.centre += 0.5 * Trail::kStripChord * Vec2(up + down);
     set_axes(cut, broad, area / (width * size) * across, widens);
 }
@@ -109,9 +122,12 @@ void fill_rows(Recycled<Trail>& trails) {
             const double differ = smooth_step(std::abs(trails[l].length - trails[k].length) / kOneLength);
             for (std::size_t i = 0; i < trails[k].cuts.size(); ++i) {
                 const Cut &p = trails[k].cuts[i], &q = trails[l].cuts[i];
-                for (Halves* h : {&halves[k][i], &halves[l][i]}) h->widens = std::max(h->widens, differ);
-                halves[k][i].plus = half_to(p, q, differ);
-                halves[l][i].minus = half_to(q, p, differ);
+                for (Halves* h : {&halves[k][i], &halves[l][i]}) {
+                    h->widens = std::max(h->widens, differ);
+                    h->row += q.centre - p.centre;
+                }
+                halves[k][i].next = half_to(p, q, differ);
+                halves[l][i].last = half_to(q, p, differ);
             }
         }
     for (std::size_t k = 0; k < trails.size(); ++k)

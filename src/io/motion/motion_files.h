@@ -55,6 +55,9 @@ std::string krl_text(const MotionProgram& program);
 std::string gcode_text(const MotionProgram& program);
 
 /// Returns the strokes of a trajectory in JSON or CSV (by the extension), in space, with what they are painted with.
+/// Their times are the hand's, which the file has beside the tool's: hair trails by its speed, and a tool that keeps
+/// limits is slower. A file without them, or with the column `hand_s` taken out, is read on the tool's clock, and
+/// paints what the tool would.
 ///
 /// A table of another program, such as a robot's log, needs the columns t_s, x_mm, y_mm, z_mm, qw, qx, qy and qz, named
 /// in its first row, in any order: the ferrule's mouth in the model's frame, hair along −z. With a column `kind` only

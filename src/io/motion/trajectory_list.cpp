@@ -16,9 +16,9 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kFormat = "tuft-trajectory";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;  // 2: points of strokes have the hand's clock
 constexpr std::size_t kMostBytes = std::size_t{1} << 30;
-constexpr std::size_t kColumns = 11;  // t x y z qw qx qy qz fx fy fz
+constexpr std::size_t kColumns = 11;  // t x y z qw qx qy qz fx fy fz, then the hand's clock where there is one
 
 json frame_json(const MotionFrame& f) {
     return {{"position", {f.position.x, f.position.y, f.position.z}},
@@ -27,20 +27,24 @@ json frame_json(const MotionFrame& f) {
 
 json point_json(const motion::Waypoint& p) {
     const brush::Pose& pose = p.pose;
-    return {pose.time,       pose.position.x, pose.position.y, pose.position.z, pose.rotation.w, pose.rotation.x,
-            pose.rotation.y, pose.rotation.z, p.force.x,       p.force.y,       p.force.z};
+    json columns{pose.time,       pose.position.x, pose.position.y, pose.position.z, pose.rotation.w, pose.rotation.x,
+                 pose.rotation.y, pose.rotation.z, p.force.x,       p.force.y,       p.force.z};
+    if (p.hand_time) columns.push_back(*p.hand_time);
+    return columns;
 }
 
-/// Adds the points of a stroke's move, its clock from 0.
+/// Adds the points of a stroke's move, its clock from 0: the hand's where there is one, else the tool's.
 void add_samples(const json& points, stroke::RecordedStroke& s) {
     double start = 0;
     for (const json& p : points) {
-        if (!p.is_array() || p.size() != kColumns) throw Error("a point has not 11 numbers");
-        std::array<double, kColumns> v;
-        for (std::size_t i = 0; i < kColumns; ++i) v[i] = p[i].get<double>();
-        if (s.samples.empty()) start = v[0];
+        if (!p.is_array() || p.size() < kColumns || p.size() > kColumns + 1 || p.size() != points.front().size())
+            throw Error("a point has neither 11 nor 12 numbers");
+        std::array<double, kColumns + 1> v{};
+        for (std::size_t i = 0; i < p.size(); ++i) v[i] = p[i].get<double>();
+        const double time = p.size() > kColumns ? v[kColumns] : v[0];
+        if (s.samples.empty()) start = time;
         stroke::StrokeSample sample;
-        sample.time = v[0] - start;
+        sample.time = time - start;
         sample.position = {v[1], v[2], v[3]};
         sample.rotation = Quat(v[4], v[5], v[6], v[7]);
         s.samples.push_back(sample);
@@ -80,7 +84,7 @@ std::string trajectory_json(const MotionProgram& program) {
               {"version", kVersion},
               {"units",
                "seconds, metres, newtons; points: t, x, y, z, qw, qx, qy, qz, fx, fy, fz of the ferrule's "
-               "mouth, model frame; its hair points along -z"},
+               "mouth, model frame; its hair points along -z; in strokes also the hand's clock"},
               {"base", frame_json(program.base)},
               {"tool", frame_json(program.tool)},
               {"seconds", program.trajectory.seconds()},

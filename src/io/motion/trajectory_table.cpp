@@ -20,7 +20,7 @@ namespace tuft::io {
 namespace {
 
 constexpr std::array kNumbers{"t_s", "x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz"};
-constexpr const char *kKind = "kind", *kStroke = "stroke", *kPaint = "stroke_json";
+constexpr const char *kKind = "kind", *kStroke = "stroke", *kHand = "hand_s", *kPaint = "stroke_json";
 constexpr const char* kNeeded = "t_s, x_mm, y_mm, z_mm, qw, qx, qy, qz";
 constexpr double kMostStrokes = 1e6;
 
@@ -90,7 +90,7 @@ class CsvReader {
 /// Columns by their names in the first row.
 struct Columns {
     std::array<std::size_t, kNumbers.size()> numbers{};
-    std::optional<std::size_t> kind, stroke, paint;
+    std::optional<std::size_t> kind, stroke, hand, paint;
 
     explicit Columns(const std::vector<std::string>& names) {
         const auto find = [&](const char* name) -> std::optional<std::size_t> {
@@ -107,6 +107,7 @@ struct Columns {
         }
         kind = find(kKind);
         stroke = find(kStroke);
+        hand = find(kHand);
         paint = find(kPaint);
     }
 };
@@ -126,9 +127,12 @@ class TableStrokes {
         std::array<double, kNumbers.size()> v;
         for (std::size_t i = 0; i < v.size(); ++i) v[i] = number_in(cells, columns_.numbers[i]);
         stroke::RecordedStroke& s = strokes_[at->second];
-        if (is_new) starts_.push_back(v[0]);
+        if (is_new) clocks_.push_back({columns_.hand && !cell(cells, *columns_.hand).empty(), 0});
+        Clock& clock = clocks_[at->second];
+        const double time = clock.is_hand ? number_in(cells, *columns_.hand) : v[0];
+        if (is_new) clock.start = time;
         stroke::StrokeSample sample;
-        sample.time = v[0] - starts_[at->second];
+        sample.time = time - clock.start;
         sample.position = kMillimetre * Vec3(v[1], v[2], v[3]);
         sample.rotation = Quat(v[4], v[5], v[6], v[7]);
         s.samples.push_back(sample);
@@ -140,6 +144,12 @@ class TableStrokes {
     }
 
   private:
+    /// Of a stroke: the hand's where its first row has one, else the tool's.
+    struct Clock {
+        bool is_hand = false;
+        double start = 0;  ///< seconds
+    };
+
     static const std::string& cell(const std::vector<std::string>& cells, std::size_t column) {
         if (column >= cells.size()) throw Error("a row has too few cells");
         return cells[column];
@@ -166,13 +176,13 @@ class TableStrokes {
     const Columns& columns_;
     std::map<std::size_t, std::size_t> index_;  // by the table's number
     std::vector<stroke::RecordedStroke> strokes_;
-    std::vector<double> starts_;
+    std::vector<Clock> clocks_;
 };
 
 }  // namespace
 
 std::string trajectory_csv(const MotionProgram& program) {
-    std::string text = "move,kind,stroke,t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,fx_n,fy_n,fz_n,stroke_json\n";
+    std::string text = "move,kind,stroke,t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,fx_n,fy_n,fz_n,hand_s,stroke_json\n";
     for (std::size_t i = 0; i < program.trajectory.moves.size(); ++i) {
         const motion::Move& move = program.trajectory.moves[i];
         std::string paint;
@@ -183,9 +193,10 @@ std::string trajectory_csv(const MotionProgram& program) {
             const Vec3 mm = p.pose.position / kMillimetre;
             const Quat& q = p.pose.rotation;
             text += fmt::format(
-                "{},{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.9f},{:.5f},{:.5f},{:.5f},{}\n", i + 1,
+                "{},{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.9f},{:.5f},{:.5f},{:.5f},{},{}\n", i + 1,
                 motion::name_of(move.kind), move.stroke + 1, p.pose.time, mm.x, mm.y, mm.z, q.w, q.x, q.y, q.z,
-                p.force.x, p.force.y, p.force.z, std::exchange(paint, {}));
+                p.force.x, p.force.y, p.force.z, p.hand_time ? fmt::format("{:.6f}", *p.hand_time) : "",
+                std::exchange(paint, {}));
         }
     }
     return text;
