@@ -178,6 +178,19 @@ TEST(Fit, OtherBeginsAndMannersNeverLose) {
     EXPECT_GT(first.score, 0.5);  // a hook that a reader sees
 }
 
+// Where no try meets the target, the path is the one that was given.
+TEST(Fit, APathFarFromItsTargetIsReturned) {
+    stroke::WidthTables tables;
+    const std::string brush = "goat-medium";
+    const BrushHand hand{tables.preset(brush), tables.of(brush), tables.holder(brush), 1.3e-4};
+    const Ring bar{{100, 80}, {200, 80}, {200, 120}, {100, 120}};
+    FitTarget target{.wanted = cells_over(std::span(&bar, 1), 2, 80)};
+    fill(target.wanted, std::span(&bar, 1));
+    std::vector<Station> start;
+    for (double x = 2000; x <= 2100; x += 8) start.push_back({{x, 2000}, 16});
+    EXPECT_EQ(fit_stations(start, target, hand, {}, {.tries = 2, .fine_tries = 0}).stations, start);
+}
+
 TEST(Style, ShippedOnesLoadAndUnknownKeysAreNamed) {
     EXPECT_EQ(list_styles(), (std::vector<std::string>{"italic", "kaishu", "line", "xingshu"}));
     for (const std::string& name : list_styles()) EXPECT_EQ(load_style(name).name, name);

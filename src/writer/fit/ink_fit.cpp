@@ -249,10 +249,10 @@ FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& ta
     };
     const std::vector<Station>* first = &stations;
     Manner manner;
-    FitResult best;
+    FitResult best{.stations = stations};
     for (const std::vector<Station>* begin : {&stations, &other})
         for (const Manner& next : kManners) {
-            if (begin->empty() || best.iou >= options.weak) continue;
+            if (begin->empty() || (best.tries > 0 && best.iou >= options.weak)) continue;
             FitResult again = fit_from(*begin, *begin, options.tries, options.step, next);
             again.tries += best.tries;
             if (again.score > best.score)
