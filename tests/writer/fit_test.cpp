@@ -156,6 +156,41 @@ TEST(Fit, AStraightBarIsCoveredFromAWrongStart) {
     EXPECT_GT(fitted.iou, 0.93);
 }
 
+// The best of several begins and manners is at least as good as the first of them, which is among them: exact.
+TEST(Fit, OtherBeginsAndMannersNeverLose) {
+    stroke::WidthTables tables;
+    const std::string brush = "goat-medium";
+    const BrushHand hand{tables.preset(brush), tables.of(brush), tables.holder(brush), 1.3e-4};
+    const Ring hook{{100, 80}, {420, 80}, {420, 100}, {330, 230}, {320, 225}, {360, 125}, {100, 125}};
+    FitTarget target{.wanted = cells_over(std::span(&hook, 1), 2, 80)};
+    fill(target.wanted, std::span(&hook, 1));
+    std::vector<Station> start, other;
+    for (double x = 110; x < 380; x += 8) start.push_back({{x, 102}, 20}), other.push_back({{x, 102}, 20});
+    for (double t = 0; t <= 1; t += 0.0625) {
+        start.push_back({{std::lerp(380, 328, t), std::lerp(102, 220, t)}, std::lerp(20, 5, t)});
+        other.push_back({{std::lerp(395, 328, t), std::lerp(95, 220, t)}, std::lerp(20, 5, t)});
+    }
+    const FitResult first = fit_stations(start, target, hand, {}, {.tries = 4, .fine_tries = 0, .weak = 0}, other),
+                    best = fit_stations(start, target, hand, {}, {.tries = 4, .fine_tries = 0, .weak = 1}, other);
+    EXPECT_LE(first.tries, 4);
+    EXPECT_GT(best.tries, first.tries);
+    EXPECT_GE(best.score, first.score);
+    EXPECT_GT(first.score, 0.5);  // a hook that a reader sees
+}
+
+// Where no try meets the target, the path is the one that was given.
+TEST(Fit, APathFarFromItsTargetIsReturned) {
+    stroke::WidthTables tables;
+    const std::string brush = "goat-medium";
+    const BrushHand hand{tables.preset(brush), tables.of(brush), tables.holder(brush), 1.3e-4};
+    const Ring bar{{100, 80}, {200, 80}, {200, 120}, {100, 120}};
+    FitTarget target{.wanted = cells_over(std::span(&bar, 1), 2, 80)};
+    fill(target.wanted, std::span(&bar, 1));
+    std::vector<Station> start;
+    for (double x = 2000; x <= 2100; x += 8) start.push_back({{x, 2000}, 16});
+    EXPECT_EQ(fit_stations(start, target, hand, {}, {.tries = 2, .fine_tries = 0}).stations, start);
+}
+
 TEST(Style, ShippedOnesLoadAndUnknownKeysAreNamed) {
     EXPECT_EQ(list_styles(), (std::vector<std::string>{"italic", "kaishu", "line", "xingshu"}));
     for (const std::string& name : list_styles()) EXPECT_EQ(load_style(name).name, name);

@@ -14,19 +14,44 @@ constexpr double kMostMoved = 60;        // units from the path of the first try
 constexpr double kTip = 16;              // units of half width at a tip
 constexpr double kGrown = 1.15;          // of the first half width, with kTip more: beyond it corners become balls
 constexpr double kEndFade = 20;          // units over which a moved end fades
+constexpr std::size_t kHead = 3;         // stations of a head, which move as one
 constexpr double kSoft = 2;              // stations of the Gaussian that smooths corrections
 constexpr double kSharp = 1.6;           // radians of a turn at which corrections are smoothed less
 constexpr double kCornerSoft = 1.2;      // stations, there
 constexpr std::size_t kCornerReach = 3;  // stations
 constexpr double kNeedle = 24;           // units about an end in which its ink must not reach further than wanted
 constexpr double kNeedleBack = 0.6;      // part of that taken back at once
+constexpr float kDeepest = 24;           // units of depth that count
+constexpr double kRim = 4;               // units of depth at which a wrong cell counts once
 constexpr double kTaken = 0.5;           // coverage from which a cell is ink
 
 struct Errors {
     std::vector<double> left, right, kick;  ///< units, [stations]
     double head = 0, tail = 0;              ///< units by which the ends are to be longer
     double iou = 0;
+    double score = 0;  ///< overlap in which a wrong cell counts by its depth
 };
+
+/// How the sides and the head of a path are treated when it is corrected.
+struct Manner {
+    /// Left and right are those of the first path. Corrections fold a sharp corner, and the directions of a folded path
+    /// point anywhere; but they follow a path that is moved far.
+    bool first_sides = false;
+    /// The stations of the head move as one. The hand takes the direction in which it sets the tuft down from the first
+    /// of them: turned by a correction, the tuft may sweep through the head.
+    bool whole_head = false;
+};
+constexpr Manner kManners[] = {{false, false}, {true, true}};
+
+/// Distance of each cell from the edge of an area on the cell's side of it, units, at most `kDeepest`.
+std::vector<float> depths_of(const Cells& wanted) {
+    Cells outside = wanted;
+    for (std::uint8_t& cell : outside.inside) cell = cell == 0;
+    std::vector<float> depth = clearances(wanted);
+    const std::vector<float> beyond = clearances(outside);
+    for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = std::min(std::max(depth[i], beyond[i]), kDeepest);
+    return depth;
+}
 
 std::vector<double> lengths_of(const std::vector<Station>& s) {
     std::vector<double> along{0};
@@ -80,19 +105,20 @@ struct Reach {
     double too_short() const { return ink > wanted ? kNeedleBack * (wanted - ink) : 1e9; }
 };
 
-/// Compares the ink of a try with the target.
-Errors errors_of(const std::vector<Station>& s, const FitTarget& target, const stroke::PlaneInk& ink,
-                 const stroke::StrokeSamples& trace, double unit) {
+/// Compares the ink of a try with the target. `sides`: stations whose directions part left and right.
+Errors errors_of(const std::vector<Station>& s, const std::vector<Station>& sides, const FitTarget& target,
+                 const std::vector<float>& depths, const stroke::PlaneInk& ink, const stroke::StrokeSamples& trace,
+                 double unit) {
     const Cells& cells = target.wanted;
     const std::size_t n = s.size();
     const std::vector<double> along = lengths_of(s);
     Errors e{.left = std::vector<double>(n, 0), .right = std::vector<double>(n, 0), .kick = std::vector<double>(n, 0)};
     const double spacing = std::max(along.back() / static_cast<double>(n - 1), 1.0);
     const double part = cells.cell * cells.cell / spacing;
-    double both = 0, either = 0, head = 0, tail = 0;
+    double both = 0, either = 0, deep = 0, head = 0, tail = 0;
     Reach reach_head, reach_tail;
     const std::size_t touch = trace.samples.size() - 1 - n;  // samples before that of the first station
-    const Vec2 out_head = -direction_at(s, 0), out_tail = direction_at(s, n - 1);
+    const Vec2 out_head = -direction_at(sides, 0), out_tail = direction_at(sides, n - 1);
     for (int j = 0; j < cells.height; ++j)
         for (int i = 0; i < cells.width; ++i) {
             const Vec2 p = cells.centre(i, j);
@@ -107,6 +133,7 @@ Errors errors_of(const std::vector<Station>& s, const FitTarget& target, const s
                 continue;
             }
             either += weight;
+            deep += weight * static_cast<double>(depths[at]) / kRim;
             const double error = weight * (wanted ? part : -part);
             const std::size_t k = nearest_station(s, p);
             if (k < 2 && glm::dot(p - s[0].centre, out_head) > 0) {
@@ -129,7 +156,7 @@ Errors errors_of(const std::vector<Station>& s, const FitTarget& target, const s
                     continue;
                 }
             }
-            const Vec2 d = direction_at(s, k), off = p - s[k].centre;
+            const Vec2 d = direction_at(sides, k), off = p - s[k].centre;
             (d.x * off.y - d.y * off.x > 0 ? e.left : e.right)[k] += error;
         }
     const auto width = [&](std::size_t k) { return std::max(2 * s[k].half, 12.0); };
@@ -138,6 +165,7 @@ Errors errors_of(const std::vector<Station>& s, const FitTarget& target, const s
     e.head = std::min(e.head, reach_head.too_short());
     e.tail = std::min(e.tail, reach_tail.too_short());
     e.iou = either > 0 ? both / either : 0;
+    e.score = both > 0 ? both / (both + deep) : 0;
     return e;
 }
 
@@ -157,15 +185,23 @@ std::vector<double> softness_of(const std::vector<Station>& s) {
     return soft;
 }
 
+/// Moves the stations of the head as one.
+void keep_head(std::vector<Station>& s, const std::vector<Station>& first) {
+    if (s.size() <= 2 * kHead) return;
+    Vec2 moved{0};
+    for (std::size_t i = 0; i < kHead; ++i) moved += (s[i].centre - first[i].centre) / double{kHead};
+    for (std::size_t i = 0; i < kHead; ++i) s[i].centre = first[i].centre + moved;
+}
+
 void correct(std::vector<Station>& s, const std::vector<Station>& first, const std::vector<double>& soft,
-             const Errors& e) {
+             const Errors& e, const Manner& manner) {
     const std::size_t n = s.size();
     const std::vector<double> left = smoothed(e.left, soft), right = smoothed(e.right, soft),
                               kick = smoothed(e.kick, soft), along = lengths_of(s);
-    const std::vector<Station> before = s;
-    const Vec2 out_head = -direction_at(before, 0), out_tail = direction_at(before, n - 1);
+    const std::vector<Station> sides = manner.first_sides ? first : s;
+    const Vec2 out_head = -direction_at(sides, 0), out_tail = direction_at(sides, n - 1);
     for (std::size_t i = 0; i < n; ++i) {
-        const Vec2 d = direction_at(before, i);
+        const Vec2 d = direction_at(sides, i);
         s[i].centre += kMove * 0.5 * (left[i] - right[i]) * Vec2(-d.y, d.x);
         s[i].half += kPress * (0.5 * (left[i] + right[i]) - kick[i]);
         const double from_head = std::max(0.0, 1 - along[i] / kEndFade),
@@ -178,6 +214,7 @@ void correct(std::vector<Station>& s, const std::vector<Station>& first, const s
         const double tip = std::min(along[i], along.back() - along[i]);
         s[i].half = std::clamp(s[i].half, 0.0, std::min(kTip + tip, kGrown * first[i].half + kTip));
     }
+    if (manner.whole_head) keep_head(s, first);
 }
 
 }  // namespace
@@ -190,8 +227,9 @@ stroke::PlaneInk draw_on_plane(std::span<const Station> stations, const BrushHan
 
 FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& target, const BrushHand& hand,
                        const Pace& pace, const FitOptions& options, const std::vector<Station>& other) {
+    const std::vector<float> depths = depths_of(target.wanted);
     const auto fit_from = [&](const std::vector<Station>& first, const std::vector<Station>& begin, int tries,
-                              double step) {
+                              double step, const Manner& manner) {
         const std::vector<double> soft = softness_of(first);
         FitResult best{.stations = begin};
         std::vector<Station> next = begin;
@@ -200,24 +238,31 @@ FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& ta
             const stroke::StrokeSamples trace = samples_of(next, hand, pace);
             const stroke::PlaneInk ink =
                 stroke::plane_ink(trace, hand.preset, hand.hold, step * hand.unit, target.wanted.cell * hand.unit);
-            const Errors errors = errors_of(next, target, ink, trace, hand.unit);
-            idle = errors.iou > best.iou + 1e-4 ? 0 : idle + 1;
-            if (errors.iou > best.iou) best.iou = errors.iou, best.stations = next;
+            const Errors errors =
+                errors_of(next, manner.first_sides ? first : next, target, depths, ink, trace, hand.unit);
+            idle = errors.score > best.score + 1e-4 ? 0 : idle + 1;
+            if (errors.score > best.score) best.score = errors.score, best.iou = errors.iou, best.stations = next;
             ++best.tries;
-            correct(next, first, soft, errors);
+            correct(next, first, soft, errors, manner);
         }
         return best;
     };
     const std::vector<Station>* first = &stations;
-    FitResult best = fit_from(stations, stations, options.tries, options.step);
-    if (best.iou < options.weak && !other.empty()) {
-        FitResult again = fit_from(other, other, options.tries, options.step);
-        again.tries += best.tries;
-        if (again.iou > best.iou) best = std::move(again), first = &other;
-    }
+    Manner manner;
+    FitResult best{.stations = stations};
+    for (const std::vector<Station>* begin : {&stations, &other})
+        for (const Manner& next : kManners) {
+            if (begin->empty() || (best.tries > 0 && best.iou >= options.weak)) continue;
+            FitResult again = fit_from(*begin, *begin, options.tries, options.step, next);
+            again.tries += best.tries;
+            if (again.score > best.score)
+                best = std::move(again), first = begin, manner = next;
+            else
+                best.tries = again.tries;
+        }
     if (options.fine_tries > 0) {
         const int before = best.tries;
-        best = fit_from(*first, best.stations, options.fine_tries, options.fine_step);
+        best = fit_from(*first, best.stations, options.fine_tries, options.fine_step, manner);
         best.tries += before;
     }
     return best;

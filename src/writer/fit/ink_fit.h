@@ -23,14 +23,15 @@ struct FitOptions {
     double step = 5;         ///< units between poses
     int fine_tries = 3;      ///< drawings after those, from the best of them on
     double fine_step = 1.5;  ///< units; the ink of a tuft depends on the step, by .005 of the overlap from 5 to 1
-    double weak = 0.95;      ///< overlap below which another begin is tried
+    double weak = 0.97;      ///< overlap below which another manner and another begin are tried
     int idle = 4;            ///< tries without a gain after which it stops
 };
 
 /// Result of `fit_stations`.
 struct FitResult {
     std::vector<Station> stations;
-    double iou = 0;  ///< weighted intersection over union with the wanted area
+    double iou = 0;    ///< weighted intersection over union with the wanted area
+    double score = 0;  ///< that, with wrong cells counted by their depth
     int tries = 0;
 };
 
@@ -40,9 +41,13 @@ struct FitResult {
 /// goes to the left or right of its nearest station, as area over station spacing; extra ink that another station, more
 /// than 60 units along the path, covered first lifts that one; cells beyond an end change the length. Smoothed over two
 /// stations, the path moves by 0.6 · ½ (left − right) and the half width grows by 0.5 · ½ (left + right) less the kick.
-/// Half widths stay below 16 units + the distance to the nearer tip. Returns the best try; deterministic. Cost: 0.1 ms
-/// per pose. Where the best try overlaps by less than `options.weak`, it begins again from `other`, if that is not
-/// empty, and the better of both goes on to the fine tries.
+/// Half widths stay below 16 units + the distance to the nearer tip. Cost: 0.1 ms per pose. Deterministic.
+///
+/// The best try is that of the largest score B / (B + Σ w d / 4): B cells are covered rightly, and a wrong cell of
+/// weight w lies d ≤ 24 units on the wrong side of the edge. A lump counts more than a rim of the same area. Where the
+/// best try overlaps by less than `options.weak`, it begins again in another manner (left and right are those of the
+/// first path, and the first three stations move as one), and from `other`, if that is not empty, in both. The best of
+/// them goes on to the fine tries.
 FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& target, const BrushHand& hand,
                        const Pace& pace, const FitOptions& options = {}, const std::vector<Station>& other = {});
 
