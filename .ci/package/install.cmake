@@ -19,7 +19,7 @@ foreach(module ${tuft_libraries})
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/src/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tuft COMPONENT dev
     FILES_MATCHING PATTERN "*.h"
     PATTERN "gl_*.h" EXCLUDE PATTERN "entry_json.h" EXCLUDE PATTERN "flat_area_json.h" EXCLUDE PATTERN "presets.h" EXCLUDE PATTERN "rod_newton.h" EXCLUDE PATTERN "rod_solver.h" EXCLUDE
-    PATTERN "coupled_energy.h" EXCLUDE
+    PATTERN "coupled_energy.h" EXCLUDE PATTERN "ldlt.h" EXCLUDE PATTERN "toml_text.h" EXCLUDE
     PATTERN "scene_document.h" EXCLUDE PATTERN "mtl_material.h" EXCLUDE PATTERN "gltf_prune.h" EXCLUDE PATTERN "gltf_file.h" EXCLUDE PATTERN "cad_faces.h" EXCLUDE
     PATTERN "xml_numbers.h" EXCLUDE PATTERN "json_number.h" EXCLUDE PATTERN "stroke_description.h" EXCLUDE PATTERN "task_arena.h" EXCLUDE)
 endforeach()
