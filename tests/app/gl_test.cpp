@@ -173,5 +173,38 @@ TEST_F(Painted, InkDrawnPieceByPieceIsThePictureDrawnAtOnce) {
     }
 }
 
+// A brush near the eye has its corners beside the picture, and its handle goes on to the edge of it.
+TEST_F(Painted, ASolidWithItsCornersBesideThePictureCoversIt) {
+    const stroke::Model model = test::shipped_model("bowl.ply", 512);
+    stroke::Document painting(model);
+    Texture texture(painting);
+    render::GlScene scene;
+    scene.set_mesh(*model.mesh, model.atlas.corner_uvs);
+    scene.set_texture(texture.pixels());
+    Random random(1);
+    render::GlView::Frame frame = any_frame(model, random);
+    frame.framebuffer = display_->framebuffer();
+    frame.moving = false;
+    frame.camera.parallel_height = 0;
+    const render::GlCamera& c = frame.camera;
+    const double depth = 2 * c.near, size = 20 * depth;
+    const Vec3 at = c.eye + depth * c.forward;
+    const render::GlSolid solid{.positions = {Vec3f(at - size * (c.right + c.up)), Vec3f(at + size * (c.right - c.up)),
+                                              Vec3f(at + size * c.up)},
+                                .normals = std::vector<Vec3f>(3, Vec3f(-c.forward)),
+                                .colours = std::vector<Vec3f>(3, Vec3f(0.9f, 0.1f, 0.1f)),
+                                .triangles = {0, 1, 2}};
+    frame.solid = &solid;
+    frame.opacity = 1;
+    render::GlView view;
+    view.draw(scene, frame);
+    glBindFramebuffer(GL_FRAMEBUFFER, frame.framebuffer);
+    const std::vector<std::uint8_t> pixels = render::read_pixels(0, 0, kWidth, kHeight);
+    const std::size_t channels = pixels.size() / (static_cast<std::size_t>(kWidth) * kHeight);
+    int red = 0;
+    for (std::size_t i = 0; i < pixels.size(); i += channels) red += pixels[i] > 2 * pixels[i + 1];
+    EXPECT_EQ(red, kWidth * kHeight);
+}
+
 }  // namespace
 }  // namespace tuft::app

@@ -3,9 +3,11 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -20,11 +22,11 @@ constexpr int kMargin = 3;       // pixels round a changed part that filtering r
 constexpr double kSpare = 1.5;   // times the area of two parts up to which they are drawn as one
 constexpr std::size_t kMostParts = 12;
 
-/// The part of the picture that a box covers.
-PixelRect part_of(const GlCamera& c, const Vec3f& lo, const Vec3f& hi) {
+/// The part of the picture that the hull of some points covers.
+PixelRect part_of(const GlCamera& c, std::span<const Vec3f> points) {
     double x0 = 1e9, y0 = 1e9, x1 = -1e9, y1 = -1e9;
-    for (int k = 0; k < 8; ++k) {
-        const Vec3 p = picture_point(c, Vec3(k & 1 ? hi.x : lo.x, k & 2 ? hi.y : lo.y, k & 4 ? hi.z : lo.z));
+    for (const Vec3f& point : points) {
+        const Vec3 p = picture_point(c, Vec3(point));
         if (p.z <= c.near) return {0, 0, c.width, c.height};
         x0 = std::min(x0, p.x), x1 = std::max(x1, p.x), y0 = std::min(y0, p.y), y1 = std::max(y1, p.y);
     }
@@ -33,6 +35,14 @@ PixelRect part_of(const GlCamera& c, const Vec3f& lo, const Vec3f& hi) {
     const int left = cut(x0 - kMargin, c.width), right = cut(x1 + kMargin + 1, c.width);
     const int low = cut(c.height - y1 - kMargin, c.height), high = cut(c.height - y0 + kMargin + 1, c.height);
     return {left, low, right - left, high - low};
+}
+
+/// The same of a box.
+PixelRect part_of(const GlCamera& c, const GlBox& box) {
+    std::array<Vec3f, 8> corners;
+    for (unsigned k = 0; k < 8; ++k)
+        corners[k] = {k & 1 ? box.hi.x : box.lo.x, k & 2 ? box.hi.y : box.lo.y, k & 4 ? box.hi.z : box.lo.z};
+    return part_of(c, corners);
 }
 
 PixelRect joined(const PixelRect& a, const PixelRect& b) {
@@ -138,7 +148,7 @@ void GlView::draw(GlScene& scene, const Frame& f) {
         if (!spare && !std::exchange(s.warm, true)) warm_up(scene, f);
     } else if (!s.changed.empty() && f.appearance.options.shading != Shading::triangles) {
         std::vector<PixelRect> parts;
-        for (const GlBox& box : s.changed) add(parts, part_of(c, box.lo, box.hi));
+        for (const GlBox& box : s.changed) add(parts, part_of(c, box));
         for (const PixelRect& part : parts) {
             (s.is_smooth ? s.smooth : s.plain).bind();
             scene.redraw_model(c, f.appearance.light, f.appearance.options, part, s.changed);
@@ -148,8 +158,8 @@ void GlView::draw(GlScene& scene, const Frame& f) {
     s.changed.clear();
     s.plain.resolve_to(f.framebuffer, all, f.x, f.y);
     if (!f.solid || f.solid->positions.empty() || f.opacity <= 0) return;
-    PixelRect part;
-    for (const Vec3f& p : f.solid->positions) part = joined(part, part_of(c, p, p));
+    // All points together: one beside the picture still spans triangles within it.
+    const PixelRect part = part_of(c, f.solid->positions);
     if (part.empty()) return;
     GlTarget& under = s.is_smooth ? s.smooth : s.plain;
     s.over.resize(c.width, c.height, s.is_smooth ? kSamples : 0);

@@ -23,7 +23,7 @@ struct FitOptions {
     double step = 5;         ///< units between poses
     int fine_tries = 3;      ///< drawings after those, from the best of them on
     double fine_step = 1.5;  ///< units; the ink of a tuft depends on the step, by .005 of the overlap from 5 to 1
-    double weak = 0.97;      ///< overlap below which another manner and another begin are tried
+    double weak = 0.955;     ///< overlap below which another manner and another begin are tried
     int idle = 4;            ///< tries without a gain after which it stops
 };
 
