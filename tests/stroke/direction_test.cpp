@@ -46,16 +46,22 @@ double apart(const std::map<std::uint32_t, double>& first, const Frame& frame, c
 }
 
 TEST(Direction, SheetAndHandTurnedTogetherGiveTheSameInk) {
-    // The same texels of the same atlas. Vertices are floats, and so is the film: 2e-7. Where a sample just touches or
-    // just leaves, one more or less gives ink, 3e-4 of the line; sheets that lie askew to all axes of space are flat
-    // within 2 nm, which gives several. Of hair that came to lie on the other side it would be 3e-2.
-    for (const auto& [brush, depth] : {std::pair{"wolf-small", 4.3e-3}, std::pair{"mixed-medium", 5.2e-3}}) {
+    // The same texels of the same atlas. Vertices are floats, and so is the film: 3e-7. Sheets that lie askew to axes
+    // of space are flat within 2 nm only. Where hair just touches, just leaves or begins to slip, at both ends of the
+    // line, that decides on a sample more or less: of wolf 2e-4 of the line in all, of mixed hair, whose point is
+    // blunt, 5e-4, several times that on a sheet askew to all three axes. Of hair that came to lie on the other side it
+    // would be 3e-2.
+    struct Case {
+        std::string brush;
+        double depth, tilted;
+    };
+    for (const auto& [brush, depth, limit] : {Case{"wolf-small", 4.3e-3, 3e-4}, Case{"mixed-medium", 5.2e-3, 6e-4}}) {
         const auto first = film_of_line({}, brush, depth);
         ASSERT_FALSE(first.empty());
         for (const double degrees : {1, 15, 40, 90, 180, 200})
-            EXPECT_LT(apart(first, turned(degrees), brush, depth), 5e-4) << brush << " " << degrees;
-        EXPECT_LT(apart(first, tilted({1, 0, 0}, 30), brush, depth), 5e-4) << brush;
-        EXPECT_LT(apart(first, tilted({0, 1, 0}, 30), brush, depth), 5e-4) << brush;
+            EXPECT_LT(apart(first, turned(degrees), brush, depth), 1e-6) << brush << " " << degrees;
+        EXPECT_LT(apart(first, tilted({1, 0, 0}, 30), brush, depth), limit) << brush;
+        EXPECT_LT(apart(first, tilted({0, 1, 0}, 30), brush, depth), limit) << brush;
         EXPECT_LT(apart(first, tilted({1, 0, 0}, 90), brush, depth), 1e-6) << brush << ", axis to axis";
         EXPECT_LT(apart(first, tilted({1, 2, 3}, 70), brush, depth), 3e-3) << brush;
     }
