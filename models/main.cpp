@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "mesh/read/polygon_soup.h"
 #include "shape.h"
 

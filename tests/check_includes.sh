@@ -8,17 +8,24 @@ order='
 core
 core/geometry core/text
 core/system
+core/files
 core/manual
 mesh brush/rod
+brush/rod/coupled
 mesh/read brush/state
 brush/preset
-mesh/repair mesh/query brush/papers
+brush/papers/space
+mesh/repair mesh/query brush/papers/macro
+brush/papers
+brush/tuft/shape
 atlas brush/tuft
+brush/surface
 atlas/seams brush/calibration
 atlas/flatten
 atlas/pack
 atlas/charts
 atlas/unwrap atlas/texels contact
+haptic/device
 haptic
 footprint/outline
 footprint/stamp
@@ -27,8 +34,10 @@ ink/spectra
 ink/colour
 ink/canvas
 ink/composite ink/exchange ink/texels
+ink/film/tile
 ink/film
 decal
+stroke/journal/entry
 stroke/journal
 stroke/gesture
 stroke/placement
@@ -36,11 +45,17 @@ stroke/drawing stroke/surface
 stroke/contact
 stroke/deposit
 stroke/session
+stroke/layers
 stroke/document
 motion
-io/font io/image render/brush render/gl
+io/font io/image io/package render/brush render/gl
+io/scene
+io/gltf io/import
 io/model io/motion render/picture
-io/export io/project io/strokes
+io/strokes
+io/svg/style
+io/svg
+io/export io/project
 io/sheet
 pictures
 writer/glyphs
@@ -48,14 +63,19 @@ writer/gesture
 writer/copy writer/fit writer/layout
 writer/text
 variants
+cli/arguments
+cli/steps
+cli/bench cli/commands cli/device
 cli app/input app/text
 app/view
+app/document/pictures
 app/document
 app/work
 app/paint
 app/widgets
+app/state
 app/session
-app/panels
+app/dialogs app/panels
 app/tools
 app/studio
 app/script
@@ -91,9 +111,9 @@ wall 'OpenMesh' 'mesh/*.cpp'
 wall 'CGAL' '*.cpp'
 wall 'embree3' '*.cpp'
 wall 'OpenImageIO|SQLiteCpp|sqlite3|tiny_gltf|zlib|assimp' 'io/*.cpp'
-wall '[A-Za-z0-9_]+\.hxx' 'io/model/import_cad.cpp' 'io/model/cad_faces.*'
-wall 'draco/' 'io/model/draco_module.cpp'
-wall 'meshoptimizer' 'io/model/*.cpp' 'mesh/repair/*.cpp'
+wall '[A-Za-z0-9_]+\.hxx' 'io/import/import_cad.cpp' 'io/import/cad_faces.*'
+wall 'draco/' 'io/gltf/draco_module.cpp'
+wall 'meshoptimizer' 'io/gltf/*.cpp' 'mesh/repair/*.cpp'
 wall 'pugixml' 'io/*.cpp' 'writer/glyphs/*.cpp'
 wall 'ft2build|hb|fontconfig' 'io/font/*.cpp'
 wall 'podofo' 'io/sheet/*.cpp'

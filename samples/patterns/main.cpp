@@ -11,7 +11,7 @@
 
 #include "atlas/texels/seams.h"
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "core/text/units.h"
 #include "io/image/image.h"
 #include "io/model/read_model.h"

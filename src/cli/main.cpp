@@ -4,8 +4,8 @@
 #include <iostream>
 #include <new>
 
-#include "cli/commands.h"
-#include "cli/console.h"
+#include "cli/steps/commands.h"
+#include "cli/steps/console.h"
 #include "core/error.h"
 #include "core/system/parallel.h"
 #include "core/text/text.h"

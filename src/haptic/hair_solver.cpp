@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/ease.h"
-#include "haptic/limits.h"
+#include "haptic/device/limits.h"
 
 namespace tuft::haptic {
 namespace {

@@ -3,8 +3,8 @@
 #include <array>
 
 #include "core/geometry/types.h"
+#include "haptic/device/limits.h"
 #include "haptic/hair_answer.h"
-#include "haptic/limits.h"
 
 /// \file
 /// The law of the force, one period T = 1 ms at a time: from the place of the arm and the force of the hair to the

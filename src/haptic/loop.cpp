@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "core/system/recycled.h"
-#include "haptic/exchange.h"
+#include "haptic/device/exchange.h"
 
 namespace tuft::haptic {
 namespace {

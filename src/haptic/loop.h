@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "haptic/device.h"
+#include "haptic/device/device.h"
 #include "haptic/hair_solver.h"
 #include "haptic/recording.h"
 #include "haptic/servo.h"

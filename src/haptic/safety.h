@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "core/message.h"
-#include "haptic/device.h"
+#include "haptic/device/device.h"
 
 /// \file
 /// Whether force may leave, and how much of it. Pure: time is the number of the period. `Servo` asks it before each

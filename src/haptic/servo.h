@@ -1,10 +1,10 @@
 #pragma once
 
-#include "haptic/device.h"
+#include "haptic/device/device.h"
+#include "haptic/device/workspace.h"
 #include "haptic/hair_answer.h"
 #include "haptic/law.h"
 #include "haptic/safety.h"
-#include "haptic/workspace.h"
 
 /// \file
 /// One period of the servo, without clock or thread: safety, workspace and law in their order. The loop (loop.h) calls

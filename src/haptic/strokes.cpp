@@ -1,6 +1,6 @@
 #include "haptic/strokes.h"
 
-#include "haptic/limits.h"
+#include "haptic/device/limits.h"
 
 namespace tuft::haptic {
 

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
+#include "haptic/device/simulated.h"
 #include "haptic/hair_solver.h"
 #include "haptic/servo.h"
-#include "haptic/simulated.h"
 
 /// \file
 /// The loop in virtual time, on one thread. A simulated hand with a simulated arm paints at a place of a model. The

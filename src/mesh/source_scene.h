@@ -7,7 +7,7 @@
 
 /// \file
 /// Scene graph of a model's file: objects, groups and materials. Readers fill it; the mesh and the project carry it
-/// unread; exports write it again (io/model/scene_document.h).
+/// unread; exports write it again (io/scene/scene_document.h).
 namespace tuft::mesh {
 
 /// Faces of one object, one group and one material of the file.

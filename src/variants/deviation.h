@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "stroke/journal/entry.h"
+#include "stroke/journal/entry/entry.h"
 #include "variants/task.h"
 
 /// \file

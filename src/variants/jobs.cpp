@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
+#include "core/files/system_message.h"
 #include "core/system/interrupt.h"
-#include "core/system/system_message.h"
 #include "core/text/nesting.h"
 #include "core/text/text.h"
 #include "io/image/image.h"

@@ -6,9 +6,9 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/files/files.h"
+#include "core/files/toml_text.h"
 #include "core/random.h"
-#include "core/system/files.h"
-#include "core/system/toml_text.h"
 #include "core/text/text.h"
 
 namespace fs = std::filesystem;

@@ -7,16 +7,16 @@
 
 #include "brush/preset/preset.h"
 #include "core/error.h"
+#include "core/files/disk_cache.h"
+#include "core/files/files.h"
 #include "core/geometry/bounds.h"
 #include "core/system/build_facts.h"
-#include "core/system/disk_cache.h"
-#include "core/system/files.h"
 #include "core/text/nesting.h"
 #include "core/text/text.h"
 #include "core/text/units.h"
 #include "ink/colour/pigments.h"
 #include "stroke/drawing/free_area.h"
-#include "stroke/journal/samples.h"
+#include "stroke/journal/entry/samples.h"
 
 namespace fs = std::filesystem;
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "core/text/units.h"
 #include "ink/colour/pigments.h"
 #include "io/image/image.h"

@@ -17,8 +17,8 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/files/system_message.h"
 #include "core/system/interrupt.h"
-#include "core/system/system_message.h"
 
 namespace tuft::variants {
 namespace {

@@ -13,7 +13,7 @@
 #include "models.h"
 #include "paths.h"
 #include "projects.h"
-#include "stroke/journal/entry_json.h"
+#include "stroke/journal/entry/entry_json.h"
 #include "stroke/journal/recorded_journal.h"
 
 namespace tuft::app {

@@ -9,8 +9,8 @@
 #include <fstream>
 #include <thread>
 
-#include "app/document/thumbnails.h"
-#include "app/session/brush_settings.h"
+#include "app/document/pictures/thumbnails.h"
+#include "app/state/brush_settings.h"
 #include "app/view/viewport.h"
 #include "brush/calibration/sweep.h"
 #include "brush/preset/preset.h"

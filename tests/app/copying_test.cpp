@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "copied_picture.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "writer/glyphs/glyph_source.h"
 
 namespace tuft::app {

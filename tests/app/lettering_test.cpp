@@ -8,7 +8,7 @@
 
 #include "both_programs.h"
 #include "copied_picture.h"
-#include "core/system/disk_cache.h"
+#include "core/files/disk_cache.h"
 
 namespace tuft::app {
 namespace {

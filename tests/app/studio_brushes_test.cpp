@@ -1,5 +1,5 @@
 #include "brush/preset/preset.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "stroke/journal/journal.h"
 #include "studio_program.h"
 

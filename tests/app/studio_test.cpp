@@ -18,7 +18,7 @@
 #include "io/model/read_model.h"
 #include "io/project/project.h"
 #include "mesh/query/surface_query.h"
-#include "stroke/journal/entry_json.h"
+#include "stroke/journal/entry/entry_json.h"
 #include "stroke/journal/tables.h"
 #include "studio_program.h"
 

@@ -11,7 +11,7 @@
 #include "atlas/seams/half_edges.h"
 #include "atlas/unwrap/atlas_picture.h"
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "core/system/parallel.h"
 #include "mesh/repair/repair.h"
 #include "paths.h"

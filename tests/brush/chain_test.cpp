@@ -10,7 +10,7 @@
 #include "brush/papers/active_set.h"
 #include "brush/papers/chain_lateral.h"
 #include "brush/papers/chain_solver.h"
-#include "brush/papers/lattice.h"
+#include "brush/papers/space/lattice.h"
 #include "brush/preset/rest_shape.h"
 
 namespace tuft::brush {

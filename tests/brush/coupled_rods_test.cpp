@@ -1,4 +1,4 @@
-#include "brush/rod/coupled_rods.h"
+#include "brush/rod/coupled/coupled_rods.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "brush/tuft/lateral.h"
+#include "brush/tuft/shape/lateral.h"
 
 #include <gtest/gtest.h>
 

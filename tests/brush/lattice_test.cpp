@@ -1,4 +1,4 @@
-#include "brush/tuft/lattice.h"
+#include "brush/tuft/shape/lattice.h"
 
 #include <gtest/gtest.h>
 

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "brush/papers/macro_cluster.h"
+#include "brush/papers/macro/macro_cluster.h"
+#include "brush/papers/macro/macro_skeleton.h"
+#include "brush/papers/macro/macro_stress.h"
 #include "brush/papers/macro_model.h"
-#include "brush/papers/macro_skeleton.h"
-#include "brush/papers/macro_stress.h"
 #include "papers_strokes.h"
 
 namespace tuft::brush::macro {

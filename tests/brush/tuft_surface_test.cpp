@@ -1,4 +1,4 @@
-#include "brush/tuft/tuft_surface.h"
+#include "brush/surface/tuft_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-#include "brush/tuft/tuft_surface.h"
+#include "brush/surface/tuft_surface.h"
 #include "render/brush/brush_picture.h"
 
 namespace tuft::brush {

@@ -2,10 +2,10 @@
 #include <cstring>
 #include <pugixml.hpp>
 
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "io/image/icc_profile.h"
 #include "io/image/image.h"
-#include "io/model/zip.h"
+#include "io/package/zip.h"
 #include "program.h"
 
 /// Colour spaces and layers of `tuft export`, as other programs read them.

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "haptic/haply.h"
+#include "haptic/device/haply.h"
 #include "program.h"
 #include "served.h"
 

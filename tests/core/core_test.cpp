@@ -9,11 +9,11 @@
 #include <unordered_map>
 
 #include "core/error.h"
+#include "core/files/files.h"
 #include "core/geometry/sparse_numbering.h"
 #include "core/geometry/types.h"
 #include "core/hash.h"
 #include "core/random.h"
-#include "core/system/files.h"
 #include "core/system/parallel.h"
 #include "core/text/units.h"
 

@@ -1,4 +1,4 @@
-#include "core/system/disk_cache.h"
+#include "core/files/disk_cache.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

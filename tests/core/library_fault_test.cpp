@@ -1,4 +1,4 @@
-#include "core/system/library_fault.h"
+#include "core/files/library_fault.h"
 
 #include <gtest/gtest.h>
 

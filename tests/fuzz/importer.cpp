@@ -17,8 +17,8 @@
 #include <map>
 #include <string>
 
-#include "io/model/import_cad.h"
-#include "io/model/import_scene.h"
+#include "io/import/import_cad.h"
+#include "io/import/import_scene.h"
 #include "promise.h"
 
 extern "C" __attribute__((weak)) void __sanitizer_set_death_callback(void (*)());

@@ -1,4 +1,4 @@
-#include "haptic/haply.h"
+#include "haptic/device/haply.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <future>
 #include <thread>
 
-#include "haptic/haply_messages.h"
+#include "haptic/device/haply_messages.h"
 #include "haptic/loop.h"
 #include "haptic/strokes.h"
 #include "trial_model.h"

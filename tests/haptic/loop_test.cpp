@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "core/system/allocations.h"
-#include "haptic/exchange.h"
+#include "haptic/device/exchange.h"
 #include "trial_model.h"
 
 namespace tuft::haptic {

@@ -8,7 +8,7 @@
 #include "core/random.h"
 #include "ink/exchange/deposit_mixed.h"
 #include "ink/exchange/transfer.h"
-#include "ink/film/paste.h"
+#include "ink/film/tile/paste.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-// Prints a hash of tiles of the wet film stepped by src/ink/film/film_kernel.cpp, which is compiled into
+// Prints a hash of tiles of the wet film stepped by src/ink/film/tile/film_kernel.cpp, which is compiled into
 // this program for one instruction set (same_bits.sh compares them). Prints "skipped" where it cannot run.
 #include <algorithm>
 #include <cstdio>
@@ -6,9 +6,9 @@
 
 #include "core/hash.h"
 #include "core/random.h"
-#include "ink/film/film_tile.h"
 #include "ink/film/seepage.h"
 #include "ink/film/tension.h"
+#include "ink/film/tile/film_tile.h"
 
 namespace {
 

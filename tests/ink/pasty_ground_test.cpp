@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/system/parallel.h"
-#include "ink/film/paste.h"
+#include "ink/film/tile/paste.h"
 #include "wet_stage.h"
 
 // Thin ink over paste that has not dried.

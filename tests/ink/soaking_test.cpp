@@ -5,7 +5,7 @@
 #include <map>
 #include <numbers>
 
-#include "ink/film/fibres.h"
+#include "ink/film/tile/fibres.h"
 #include "wet_stage.h"
 
 namespace tuft::ink {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/random.h"
-#include "ink/film/paste.h"
+#include "ink/film/tile/paste.h"
 
 namespace tuft::ink {
 namespace {

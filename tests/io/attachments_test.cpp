@@ -10,7 +10,7 @@
 #include "core/random.h"
 #include "io/project/project.h"
 #include "sample_model.h"
-#include "stroke/journal/entry_json.h"
+#include "stroke/journal/entry/entry_json.h"
 
 /// What a project carries besides its model and journal.
 namespace tuft::io {

@@ -36,7 +36,7 @@
 #include <map>
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "core/text/units.h"
 #include "io/model/read_model.h"
 #include "mesh/repair/repair.h"

@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "sample_model.h"
-#include "stroke/journal/entry_json.h"
+#include "stroke/journal/entry/entry_json.h"
 
 namespace tuft::io {
 namespace {

@@ -9,13 +9,13 @@
 
 #include "../stroke/sheet.h"
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "ink/composite/composite.h"
 #include "ink/composite/match.h"
 #include "ink/spectra/srgb.h"
 #include "io/image/image.h"
-#include "io/strokes/svg.h"
-#include "io/strokes/svg_page.h"
+#include "io/svg/style/svg_page.h"
+#include "io/svg/svg.h"
 #include "stroke/drawing/drawing.h"
 
 /// Scores of coloured drawings beside rasters of them by another program:

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "core/text/units.h"
-#include "io/strokes/svg.h"
+#include "io/svg/svg.h"
 #include "mesh/read/polygon_soup.h"
 #include "paths.h"
 #include "stroke/document/document.h"

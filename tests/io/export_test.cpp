@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
+#include "io/gltf/read_gltf.h"
 #include "io/image/image.h"
-#include "io/model/read_gltf.h"
 #include "mesh/read/polygon_soup.h"
 #include "sample_model.h"
 

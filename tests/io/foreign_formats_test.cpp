@@ -7,10 +7,10 @@
 
 #include "atlas/atlas.h"
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "io/image/image.h"
-#include "io/model/file_scene.h"
 #include "io/model/read_model.h"
+#include "io/scene/file_scene.h"
 #include "mesh/repair/repair.h"
 #include "paths.h"
 

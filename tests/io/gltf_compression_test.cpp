@@ -14,9 +14,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/files/files.h"
 #include "core/random.h"
-#include "core/system/files.h"
-#include "io/model/read_gltf.h"
+#include "io/gltf/read_gltf.h"
 
 /// Compressed glTF, by round trips: the test compresses with the libraries' own encoders.
 namespace tuft::io {

@@ -6,12 +6,12 @@
 #include <optional>
 
 #include "core/error.h"
+#include "core/files/files.h"
 #include "core/random.h"
-#include "core/system/files.h"
 #include "io/export/export.h"
+#include "io/gltf/read_gltf.h"
 #include "io/image/image.h"
-#include "io/model/json_number.h"
-#include "io/model/read_gltf.h"
+#include "io/scene/json_number.h"
 #include "sample_model.h"
 
 namespace tuft::io {

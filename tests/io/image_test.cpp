@@ -8,8 +8,8 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "core/files/files.h"
 #include "core/random.h"
-#include "core/system/files.h"
 #include "io/image/exr_header.h"
 #include "sample_model.h"
 

@@ -10,11 +10,11 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/files/files.h"
 #include "core/random.h"
-#include "core/system/files.h"
 #include "core/text/units.h"
 #include "stroke/journal/entries.h"
-#include "stroke/journal/entry_json.h"
+#include "stroke/journal/entry/entry_json.h"
 #include "stroke/journal/recorded_journal.h"
 
 namespace tuft::io {

@@ -1,11 +1,11 @@
-#include "io/model/materials.h"
+#include "io/scene/materials.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "io/image/image.h"
 #include "io/model/read_model.h"
 #include "io/project/project.h"

@@ -10,7 +10,7 @@
 
 #include "atlas/texels/texel_map.h"
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "io/export/export.h"
 #include "io/image/image.h"
 #include "io/model/read_model.h"

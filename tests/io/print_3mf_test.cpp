@@ -5,12 +5,12 @@
 
 #include <map>
 
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "ink/spectra/colorimetry.h"
 #include "io/export/export.h"
 #include "io/model/read_3mf.h"
-#include "io/model/zip.h"
-#include "io/model/zip_writer.h"
+#include "io/package/zip.h"
+#include "io/package/zip_writer.h"
 #include "sample_model.h"
 
 namespace tuft::io {

@@ -7,7 +7,7 @@
 #include <functional>
 #include <limits>
 
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "io/project/packing.h"
 #include "io/project/project.h"
 #include "sample_model.h"

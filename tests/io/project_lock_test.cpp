@@ -13,7 +13,7 @@
 #include <functional>
 #include <thread>
 
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "io/project/project.h"
 #include "sample_model.h"
 

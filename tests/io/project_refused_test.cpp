@@ -4,8 +4,8 @@
 #include <functional>
 
 #include "core/error.h"
+#include "core/files/files.h"
 #include "core/random.h"
-#include "core/system/files.h"
 #include "sample_project.h"
 
 /// Files that are no project, or one no more: each is refused in one line.

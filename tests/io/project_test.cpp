@@ -9,11 +9,11 @@
 #include <set>
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "io/project/packing.h"
 #include "sample_project.h"
-#include "stroke/journal/entry_json.h"
-#include "stroke/journal/parts.h"
+#include "stroke/journal/entry/entry_json.h"
+#include "stroke/journal/entry/parts.h"
 
 namespace tuft::io {
 namespace {

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "brush/preset/preset.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "ink/colour/pigments.h"
 #include "io/strokes/inkml.h"
 #include "mesh/repair/repair.h"

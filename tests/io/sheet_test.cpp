@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "io/image/image.h"
 #include "io/sheet/sheet_files.h"
 

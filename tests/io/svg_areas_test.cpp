@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "io/strokes/svg.h"
-#include "io/strokes/svg_css.h"
+#include "io/svg/style/svg_css.h"
+#include "io/svg/svg.h"
 #include "stroke/document/apply_area.h"
 
 /// Coloured drawings as areas. 100 units are 100 mm; areas below are in mm².

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "io/image/image.h"
-#include "io/strokes/svg.h"
+#include "io/svg/svg.h"
 
 /// Pictures in drawings: read as stencils of ink by darkness.
 namespace tuft::io {

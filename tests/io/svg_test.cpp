@@ -1,4 +1,4 @@
-#include "io/strokes/svg.h"
+#include "io/svg/svg.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "mesh/read/polygon_soup.h"
 #include "mesh/repair/inspect.h"
 #include "mesh/repair/repair.h"

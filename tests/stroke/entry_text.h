@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "stroke/journal/entry_json.h"
+#include "stroke/journal/entry/entry_json.h"
 
 /// Journal entries through their stored form and back.
 namespace tuft::stroke {

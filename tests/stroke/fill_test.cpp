@@ -1,4 +1,4 @@
-#include "stroke/journal/fill.h"
+#include "stroke/journal/entry/fill.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stroke/journal/layers.h"
+#include "stroke/journal/entry/layers.h"
 
 #include <gtest/gtest.h>
 

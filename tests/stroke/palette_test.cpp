@@ -1,4 +1,4 @@
-#include "stroke/document/palette.h"
+#include "stroke/layers/palette.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ink/film/paste.h"
+#include "ink/film/tile/paste.h"
 
 #include <gtest/gtest.h>
 

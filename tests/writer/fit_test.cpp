@@ -3,7 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "core/system/parallel.h"
 #include "writer/fit/writer.h"
 #include "writer/glyphs/glyph_source.h"

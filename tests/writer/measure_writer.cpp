@@ -18,7 +18,7 @@
 #include <map>
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "writer/copy/copied_glyph.h"
 #include "writer/copy/photo.h"
 #include "writer/fit/writer.h"

@@ -4,9 +4,9 @@
 #include <chrono>
 #include <fstream>
 
-#include "app/document/state_folder.h"
+#include "app/document/pictures/state_folder.h"
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 
 namespace fs = std::filesystem;
 

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/document/state_folder.h"
+#include "app/document/pictures/state_folder.h"
 #include "app/document/writing.h"
 #include "core/error.h"
+#include "core/files/files.h"
 #include "core/hash.h"
-#include "core/system/files.h"
 
 namespace fs = std::filesystem;
 

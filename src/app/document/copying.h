@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/document/small_picture.h"
+#include "app/document/pictures/small_picture.h"
 #include "io/project/attachments.h"
 #include "writer/text/text.h"
 

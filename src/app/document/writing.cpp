@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/text/units.h"
-#include "io/strokes/svg.h"
+#include "io/svg/svg.h"
 #include "stroke/journal/entries.h"
 
 namespace tuft::app {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/error.h"
-#include "haptic/exchange.h"
-#include "haptic/haply.h"
+#include "haptic/device/exchange.h"
+#include "haptic/device/haply.h"
 #include "haptic/recording.h"
 
 namespace tuft::app {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/system/disk_cache.h"
+#include "core/files/disk_cache.h"
 #include "stroke/document/fit.h"
 #include "stroke/drawing/copies.h"
 

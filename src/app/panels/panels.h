@@ -138,22 +138,6 @@ void set_colour(Session& s, const std::string& hex);
 void colour_panel(Session& s);
 void mask_section(Session& s);
 void status_bar(Session& s, float top);
-void welcome(Session& s);
-void open_dialog(Session& s);
-void opening_progress(Session& s);
-void recovery_dialog(Session& s);
-/// Asks how to open a project that another program holds.
-void in_use_dialog(Session& s);
-/// Asks before work in memory is left.
-void unsaved_work_dialog(Session& s);
-void export_dialog(Session& s);
-void decals_dialog(Session& s);
-void film_dialog(Session& s);
-void settings_dialog(Session& s);
-void keys_dialog(Session& s);
-void about_dialog(Ui& ui, DialogState& dialogs);
-/// The built-in manual.
-void manual_dialog(Ui& ui, HelpState& help, DialogState& dialogs, const KeyTable& keys);
 /// The guide, a box over the view.
 void guide(Session& s);
 /// Reference images over the view, and their list.
@@ -174,18 +158,10 @@ void tuft_inset(Session& s);
 /// Marks on the model: contact of the tuft and of its symmetric copies, and the curve being edited.
 void view_marks(const MarkParts& s, const render::GlCamera& camera);
 
-/// Returns the export command for the dialog's settings.
-ExportModel export_command(const ExportSettings& settings, const Orbit& seen_from, const std::filesystem::path& path);
-/// The same of the dialogs for decal sheets and films.
-ExportSheets sheets_command(const DecalSettings& settings, const stroke::MaskTable& masks,
-                            const std::filesystem::path& path);
-ExportFilm film_command(const FilmSettings& settings, const Orbit& seen_from, const std::filesystem::path& path);
 /// Marks on the atlas: its frame, figures, and the cursor's UV.
 void atlas_marks(const Ui& ui, const AtlasView& atlas, PaintThread& work, const std::optional<Vec2>& cursor);
 /// Creates a mask under an unused name, combined with the active one by `MaskChoice::with`.
 void make_mask(Session& s, stroke::Mask mask);
-/// Strokes that do not fit the revised model.
-void mismatch_dialog(Session& s);
 /// Returns the rigid motion that maps a surface point with its normal to another.
 RigidMove shift_between(const mesh::SurfacePoint& from, const mesh::SurfacePoint& to);
 
@@ -208,14 +184,5 @@ unsigned ink_colour(const ColourState& colours, const std::string& ink);
 unsigned ink_colour(const ColourState& colours, const ink::Ink& ink);
 /// Returns the colour of the ink that the next stroke deposits.
 unsigned colour_in_tuft(const BrushSettings& brush, const ColourState& colours, const BrushStatus& painting);
-
-/// Begins a modal window in the centre. Returns true while it is drawn; then call `end_dialog`.
-bool begin_dialog(Ui& ui, const char* title, float width);
-void end_dialog(Ui& ui);
-/// Ends the dialog `shown` by its buttons: "Cancel", and one that lets a file be chosen for `purpose`, named after the
-/// project with `extension`. Either closes it.
-void end_dialog_with_file(Session& s, bool& shown, FileDialog::Purpose purpose, const std::string& extension);
-/// Starts a row of a dialog with a name before its widget.
-void dialog_row(Ui& ui, const char* name);
 
 }  // namespace tuft::app

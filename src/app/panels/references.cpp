@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/document/small_picture.h"
+#include "app/document/pictures/small_picture.h"
 #include "app/panels/panels.h"
 #include "app/widgets/icons.h"
 #include "io/image/image.h"

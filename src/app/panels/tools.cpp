@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "app/panels/panels.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "core/text/units.h"
 
 namespace tuft::app {

@@ -10,6 +10,7 @@
 #include <map>
 #include <sstream>
 
+#include "app/dialogs/dialogs.h"
 #include "app/panels/panels.h"
 #include "app/studio/studio.h"
 #include "core/text/units.h"

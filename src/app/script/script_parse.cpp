@@ -5,7 +5,7 @@
 
 #include "app/script/script.h"
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 
 /// Script format: one command a line, words separated by blanks, "quoted" where they hold
 /// blanks; # begins a comment. Places are X,Y in pixels of the window, or in per cent of the

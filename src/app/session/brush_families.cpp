@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "app/session/brush_settings.h"
+#include "app/state/brush_settings.h"
 
 namespace tuft::app {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/system/files.h"
+#include "core/files/files.h"
 
 namespace fs = std::filesystem;
 

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "core/system/files.h"
+#include "core/files/files.h"
 
 namespace tuft::app {
 namespace {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/dialogs/dialogs.h"
 #include "app/input/imgui_feed.h"
 #include "app/panels/panels.h"
 #include "app/session/top_dialog.h"
@@ -15,7 +16,7 @@
 #include "app/tools/aim.h"
 #include "app/tools/atlas_input.h"
 #include "brush/preset/preset.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 
 namespace fs = std::filesystem;
 

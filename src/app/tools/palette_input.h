@@ -2,7 +2,7 @@
 
 #include "app/input/events.h"
 #include "app/input/pointer_input.h"
-#include "app/session/colour_state.h"
+#include "app/state/colour_state.h"
 
 /// \file
 /// Input over the palette. Window thread.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "brush/tuft/tuft_surface.h"
+#include "brush/surface/tuft_surface.h"
 #include "core/ease.h"
 #include "ink/composite/composite.h"
 

@@ -13,11 +13,11 @@
 #include <tuple>
 #include <utility>
 
-#include "app/document/state_folder.h"
+#include "app/document/pictures/state_folder.h"
 #include "app/document/writing.h"
 #include "core/error.h"
-#include "core/system/files.h"
-#include "core/system/system_message.h"
+#include "core/files/files.h"
+#include "core/files/system_message.h"
 #include "io/model/read_model.h"
 
 namespace fs = std::filesystem;

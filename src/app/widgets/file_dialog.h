@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/document/pictures.h"
+#include "app/document/pictures/pictures.h"
 #include "app/widgets/file_list.h"
 #include "app/widgets/ui.h"
 #include "core/message.h"

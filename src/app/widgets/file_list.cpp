@@ -8,7 +8,7 @@
 #include <ctime>
 #include <tuple>
 
-#include "core/system/system_message.h"
+#include "core/files/system_message.h"
 
 namespace fs = std::filesystem;
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "app/document/thumbnails.h"
+#include "app/document/pictures/thumbnails.h"
 #include "app/work/commands.h"
 #include "app/work/edit_history.h"
 #include "app/work/outbox.h"

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "stroke/journal/samples.h"
+#include "stroke/journal/entry/samples.h"
 
 /// \file
 /// Placements on a model unrolled into a plane, for pictures of a text that runs round it. Any thread.

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "app/document/pictures/thumbnails.h"
 #include "app/document/snapshots.h"
-#include "app/document/thumbnails.h"
 #include "app/view/texture.h"
 #include "core/message.h"
 #include "stroke/document/document.h"

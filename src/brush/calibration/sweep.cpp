@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <limits>
 
+#include "brush/surface/tuft_surface.h"
 #include "brush/tuft/tuft.h"
-#include "brush/tuft/tuft_surface.h"
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "core/text/units.h"
 
 namespace tuft::brush {

@@ -7,8 +7,8 @@
 
 #include "brush/papers/chain_lateral.h"
 #include "brush/papers/chain_solver.h"
-#include "brush/papers/frames.h"
-#include "brush/papers/lattice.h"
+#include "brush/papers/space/frames.h"
+#include "brush/papers/space/lattice.h"
 #include "brush/preset/rest_shape.h"
 
 namespace tuft::brush {

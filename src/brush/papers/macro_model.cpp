@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "brush/papers/frames.h"
-#include "brush/papers/macro_cluster.h"
+#include "brush/papers/macro/macro_cluster.h"
+#include "brush/papers/space/frames.h"
 #include "brush/preset/rest_shape.h"
 
 namespace tuft::brush::macro {

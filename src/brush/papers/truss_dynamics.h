@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "brush/papers/half_space.h"
+#include "brush/papers/space/half_space.h"
 #include "core/geometry/types.h"
 
 /// \file

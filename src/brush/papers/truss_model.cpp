@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "brush/papers/frames.h"
+#include "brush/papers/space/frames.h"
 #include "brush/papers/truss_force.h"
 #include "brush/preset/rest_shape.h"
 #include "brush/rod/profile.h"

@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "mesh/read/text_cursor.h"
 
 namespace tuft::brush {

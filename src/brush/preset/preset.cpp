@@ -9,9 +9,9 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "core/system/files.h"
-#include "core/system/shipped_file.h"
-#include "core/system/toml_text.h"
+#include "core/files/files.h"
+#include "core/files/shipped_file.h"
+#include "core/files/toml_text.h"
 #include "core/text/units.h"
 
 namespace tuft::brush {

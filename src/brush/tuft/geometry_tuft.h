@@ -6,7 +6,7 @@
 #include "brush/preset/preset.h"
 #include "brush/state/tuft_state.h"
 #include "brush/tuft/bundles.h"
-#include "brush/tuft/lattice.h"
+#include "brush/tuft/shape/lattice.h"
 
 /// \file
 /// The shape that a tuft carries: points of a geometry embedded in the lattice of its spines, or of foam. `step` places

@@ -5,7 +5,7 @@
 #include "brush/papers/spine_model.h"
 #include "brush/preset/preset.h"
 #include "brush/preset/rest_shape.h"
-#include "brush/rod/coupled_rods.h"
+#include "brush/rod/coupled/coupled_rods.h"
 #include "brush/rod/rod.h"
 #include "brush/state/tuft_state.h"
 #include "brush/tuft/bundles.h"

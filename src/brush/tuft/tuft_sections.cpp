@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "brush/tuft/lateral.h"
+#include "brush/tuft/shape/lateral.h"
 #include "core/ease.h"
 
 namespace tuft::brush {

@@ -10,9 +10,9 @@
 /// \file
 /// The spines of a wide ferrule, bent together. Internal to `brush/tuft`; `step` calls it where K > 1.
 ///
-/// Neighbouring spines, in a row or in a ring, are rods coupled by contact, wet film and friction (rod/coupled_rods.h).
-/// Their law in SI units, with t the thickness, γ the surface tension, S the wetness, d the diameter of a hair and φ
-/// the part of a tuft that is hair:
+/// Neighbouring spines, in a row or in a ring, are rods coupled by contact, wet film and friction
+/// (rod/coupled/coupled_rods.h). Their law in SI units, with t the thickness, γ the surface tension, S the wetness, d
+/// the diameter of a hair and φ the part of a tuft that is hair:
 ///
 ///     k_n = kHairModulus t/p,   k_s = 0.4 k_n,   W = 2 γ t min(1, S/0.2),
 ///     g_b = max(2 γ/p_c, √(12 W/k_n)),   p_c = ρ g L + 4 γ φ (1 − S) / ((1 − φ) d).

@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 
 namespace fs = std::filesystem;
 

@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "core/system/files.h"
-#include "core/system/shipped_file.h"
+#include "core/files/files.h"
+#include "core/files/shipped_file.h"
 
 namespace fs = std::filesystem;
 

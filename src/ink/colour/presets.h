@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/files/toml_text.h"
 #include "core/message.h"
-#include "core/system/toml_text.h"
 #include "ink/spectra/spectrum.h"
 
 /// \file

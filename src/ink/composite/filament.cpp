@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "core/text/units.h"
 #include "ink/colour/presets.h"
 #include "ink/composite/match.h"

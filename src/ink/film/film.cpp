@@ -12,9 +12,9 @@
 #include "ink/film/film_seams.h"
 #include "ink/film/film_step.h"
 #include "ink/film/film_worker.h"
-#include "ink/film/paste.h"
 #include "ink/film/seepage.h"
 #include "ink/film/tension.h"
+#include "ink/film/tile/paste.h"
 #include "ink/texels/drying.h"
 #include "ink/texels/pool.h"
 

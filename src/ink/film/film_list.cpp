@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "core/system/parallel.h"
-#include "ink/film/fibres.h"
+#include "ink/film/tile/fibres.h"
 
 namespace tuft::ink::wet {
 namespace {

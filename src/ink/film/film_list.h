@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ink/film/drips.h"
-#include "ink/film/film_tile.h"
+#include "ink/film/tile/film_tile.h"
 
 /// \file
 /// List of the tiles that a step of the wet film processes. Internal to the wet film (film.h).

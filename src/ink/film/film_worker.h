@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ink/canvas/canvas.h"
-#include "ink/film/film_tile.h"
+#include "ink/film/tile/film_tile.h"
 
 /// \file
 /// Per-thread buffers of the wet film. Internal to the wet film (film.h).

@@ -5,7 +5,7 @@
 
 #include "core/simd.h"
 #include "core/system/parallel.h"
-#include "ink/film/paste.h"
+#include "ink/film/tile/paste.h"
 #include "ink/texels/halo.h"
 
 namespace tuft::ink {

@@ -16,8 +16,6 @@ namespace tuft::ink::wet {
 /// m: D ∝ S^m with saturation S. Of drops in paper the area grows as V^⅔ (σ t / η)^⅓ ([Gillespie1958], [Kissa1981]),
 /// which is Barenblatt's solution for m = 2.
 inline constexpr int kSaturationPower = 2;
-/// ξ: where liquid is supplied, the front is at ξ √(D₀ t). From (S² S′)′ = −½ ξ S′, S(0) = 1.
-inline constexpr double kFrontConstant = 1.0903204;
 
 /// A link over a seam between two tiles of the set, and what goes through it.
 struct SeepLink {

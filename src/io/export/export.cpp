@@ -9,14 +9,14 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "core/files/path_fault.h"
+#include "core/files/system_message.h"
 #include "core/system/interrupt.h"
 #include "core/system/parallel.h"
-#include "core/system/path_fault.h"
-#include "core/system/system_message.h"
 #include "core/text/units.h"
 #include "io/export/export_formats.h"
 #include "io/image/image.h"
-#include "io/model/scene_document.h"
+#include "io/scene/scene_document.h"
 
 namespace fs = std::filesystem;
 

@@ -12,8 +12,8 @@
 #include "ink/spectra/srgb.h"
 #include "io/export/export_formats.h"
 #include "io/export/gltf_prune.h"
-#include "io/model/json_number.h"
-#include "io/model/scene_document.h"
+#include "io/scene/json_number.h"
+#include "io/scene/scene_document.h"
 
 /// Writes glTF: the document of the file, with new triangles and materials for the parts with ink.
 namespace tuft::io {

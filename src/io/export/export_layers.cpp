@@ -9,13 +9,13 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "core/system/parallel.h"
 #include "io/export/export.h"
 #include "io/export/export_maps.h"
 #include "io/image/icc_profile.h"
 #include "io/image/image.h"
-#include "io/model/zip_writer.h"
+#include "io/package/zip_writer.h"
 
 namespace fs = std::filesystem;
 

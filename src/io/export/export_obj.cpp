@@ -8,9 +8,9 @@
 
 #include "core/error.h"
 #include "io/export/export_formats.h"
-#include "io/model/json_number.h"
-#include "io/model/mtl_material.h"
-#include "io/model/scene_document.h"
+#include "io/scene/json_number.h"
+#include "io/scene/mtl_material.h"
+#include "io/scene/scene_document.h"
 
 namespace tuft::io {
 namespace {

@@ -5,7 +5,7 @@
 #include "core/system/parallel.h"
 #include "io/export/export.h"
 #include "io/export/export_formats.h"
-#include "io/model/scene_document.h"
+#include "io/scene/scene_document.h"
 
 /// Which parts of a model carry ink, and what is said of the others.
 namespace tuft::io {

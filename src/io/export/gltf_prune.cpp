@@ -5,8 +5,8 @@
 #include <map>
 #include <string>
 
-#include "io/model/json_number.h"
-#include "io/model/scene_document.h"
+#include "io/scene/json_number.h"
+#include "io/scene/scene_document.h"
 
 namespace tuft::io {
 namespace {

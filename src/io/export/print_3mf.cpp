@@ -8,13 +8,13 @@
 #include <unordered_map>
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "core/system/parallel.h"
 #include "core/text/xml_text.h"
 #include "ink/composite/match.h"
 #include "ink/spectra/colorimetry.h"
 #include "io/export/export_formats.h"
-#include "io/model/zip_writer.h"
+#include "io/package/zip_writer.h"
 
 namespace tuft::io {
 namespace {

@@ -10,7 +10,7 @@
 #include FT_TRUETYPE_TABLES_H
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 
 namespace tuft::io {
 namespace {

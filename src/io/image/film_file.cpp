@@ -15,9 +15,9 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
+#include "core/files/system_message.h"
 #include "core/system/interrupt.h"
-#include "core/system/system_message.h"
 
 extern char** environ;
 

@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "core/error.h"
-#include "core/system/files.h"
-#include "core/system/library_fault.h"
+#include "core/files/files.h"
+#include "core/files/library_fault.h"
 #include "io/image/exr_header.h"
 #include "io/image/image_codec.h"
 #include "io/image/loaded_module.h"

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/system/files.h"
+#include "core/files/files.h"
 
 namespace fs = std::filesystem;
 

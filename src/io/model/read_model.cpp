@@ -8,11 +8,11 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "core/system/files.h"
-#include "io/model/materials.h"
+#include "core/files/files.h"
+#include "io/gltf/read_gltf.h"
 #include "io/model/read_3mf.h"
-#include "io/model/read_gltf.h"
 #include "io/model/read_x3d.h"
+#include "io/scene/materials.h"
 
 namespace tuft::io {
 namespace {

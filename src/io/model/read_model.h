@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "io/model/read_import.h"
+#include "io/import/read_import.h"
 #include "mesh/read/polygon_soup.h"
 
 /// \file

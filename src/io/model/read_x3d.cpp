@@ -11,9 +11,9 @@
 
 #include "core/error.h"
 #include "core/system/interrupt.h"
-#include "io/model/file_scene.h"
-#include "io/model/xml_fault.h"
-#include "io/model/xml_numbers.h"
+#include "io/package/xml_fault.h"
+#include "io/package/xml_numbers.h"
+#include "io/scene/file_scene.h"
 #include "mesh/read/text_cursor.h"
 
 namespace tuft::io {

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "core/text/nesting.h"
 #include "io/motion/motion_files.h"
 #include "io/motion/stroke_description.h"

@@ -8,10 +8,10 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "io/model/json_number.h"
 #include "io/project/project_db.h"
 #include "io/project/sample_columns.h"
-#include "stroke/journal/entry_json.h"
+#include "io/scene/json_number.h"
+#include "stroke/journal/entry/entry_json.h"
 
 namespace tuft::io {
 namespace {

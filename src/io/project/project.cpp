@@ -12,10 +12,10 @@
 #include <map>
 #include <mutex>
 
-#include "core/system/files.h"
+#include "core/files/files.h"
+#include "core/files/path_fault.h"
+#include "core/files/system_message.h"
 #include "core/system/memory.h"
-#include "core/system/path_fault.h"
-#include "core/system/system_message.h"
 #include "core/text/text.h"
 #include "io/project/project_db.h"
 

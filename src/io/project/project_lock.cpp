@@ -13,7 +13,7 @@
 #include <sstream>
 #include <thread>
 
-#include "core/system/system_message.h"
+#include "core/files/system_message.h"
 
 namespace fs = std::filesystem;
 

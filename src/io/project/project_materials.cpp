@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text/nesting.h"
-#include "io/model/json_number.h"
-#include "io/model/materials.h"
 #include "io/project/project_db.h"
+#include "io/scene/json_number.h"
+#include "io/scene/materials.h"
 
 namespace tuft::io {
 namespace {

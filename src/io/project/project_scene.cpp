@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text/nesting.h"
-#include "io/model/json_number.h"
-#include "io/model/scene_document.h"
 #include "io/project/project_db.h"
+#include "io/scene/json_number.h"
+#include "io/scene/scene_document.h"
 
 namespace tuft::io {
 namespace {

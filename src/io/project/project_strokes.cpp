@@ -6,7 +6,7 @@
 
 #include "io/project/project_db.h"
 #include "io/project/sample_columns.h"
-#include "stroke/journal/entry_json.h"
+#include "stroke/journal/entry/entry_json.h"
 
 namespace tuft::io {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "core/hash.h"
 #include "io/project/project_db.h"
-#include "stroke/document/palette.h"
+#include "stroke/layers/palette.h"
 
 namespace tuft::io {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "stroke/journal/samples.h"
+#include "stroke/journal/entry/samples.h"
 
 /// \file
 /// Samples as columns of numbers: all times, then all x, …; like numbers beside each other compress well. Inside `io`

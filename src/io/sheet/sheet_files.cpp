@@ -6,7 +6,7 @@
 #include <cctype>
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "io/export/export.h"
 
 namespace fs = std::filesystem;

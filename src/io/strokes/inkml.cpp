@@ -9,10 +9,10 @@
 
 #include "core/ease.h"
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "core/system/interrupt.h"
 #include "core/text/units.h"
-#include "io/model/xml_fault.h"
+#include "io/package/xml_fault.h"
 #include "io/strokes/inkml_decode.h"
 #include "io/strokes/inkml_marks.h"
 #include "stroke/journal/journal.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/files/files.h"
 #include "core/overloaded.h"
-#include "core/system/files.h"
 #include "core/text/units.h"
 #include "core/text/xml_text.h"
 #include "io/strokes/inkml.h"

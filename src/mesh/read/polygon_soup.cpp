@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 #include "mesh/read/text_cursor.h"
 
 namespace tuft::mesh {

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <optional>
 
-#include "brush/tuft/tuft_surface.h"
+#include "brush/surface/tuft_surface.h"
 #include "core/ease.h"
 #include "core/random.h"
 #include "footprint/outline/outline.h"

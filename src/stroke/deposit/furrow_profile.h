@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "ink/film/paste.h"
+#include "ink/film/tile/paste.h"
 #include "stroke/contact/hair_contact.h"
 
 /// \file

@@ -3,7 +3,7 @@
 #include "ink/exchange/deposit_mixed.h"
 #include "ink/exchange/transfer.h"
 #include "ink/film/level.h"
-#include "ink/film/paste.h"
+#include "ink/film/tile/paste.h"
 #include "stroke/contact/stamp.h"
 #include "stroke/deposit/stamp_target.h"
 
@@ -33,7 +33,7 @@ class StampExposure {
     struct Exchanged {
         ink::NodeContents given{}, taken{};
     };
-    /// Ploughs paste (ink/film/paste.h).
+    /// Ploughs paste (ink/film/tile/paste.h).
     Exchanged plough(const ink::PasteParams& params, const ink::NodeMixes& mixes, double ds);
     /// Levels the paste of the stroke over `length` metres.
     void level(const atlas::SeamLinks& seams, double length);

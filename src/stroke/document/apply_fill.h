@@ -4,7 +4,7 @@
 
 #include "ink/exchange/deposit.h"
 #include "stroke/document/paint_target.h"
-#include "stroke/journal/fill.h"
+#include "stroke/journal/entry/fill.h"
 
 /// \file
 /// Fills and gradients on texels. Called by `Document` for entries with a `Fill`.

@@ -7,7 +7,7 @@
 
 #include "ink/exchange/deposit.h"
 #include "stroke/contact/tuft_in_hand.h"
-#include "stroke/journal/settings.h"
+#include "stroke/journal/entry/settings.h"
 
 /// \file
 /// Brushes between strokes: each one with its hair and ink as the last entry with it left them. `Document` takes a

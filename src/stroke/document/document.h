@@ -6,17 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "stroke/document/appearance.h"
 #include "stroke/document/brushes_in_hand.h"
-#include "stroke/document/layer_stack.h"
-#include "stroke/document/mask_set.h"
-#include "stroke/document/materials.h"
-#include "stroke/document/model_film.h"
 #include "stroke/document/paint_target.h"
-#include "stroke/document/palette.h"
-#include "stroke/document/part_set.h"
 #include "stroke/document/undo_history.h"
 #include "stroke/journal/journal.h"
+#include "stroke/layers/appearance.h"
+#include "stroke/layers/layer_stack.h"
+#include "stroke/layers/mask_set.h"
+#include "stroke/layers/materials.h"
+#include "stroke/layers/model_film.h"
+#include "stroke/layers/palette.h"
+#include "stroke/layers/part_set.h"
 #include "stroke/session/report.h"
 #include "stroke/surface/model.h"
 

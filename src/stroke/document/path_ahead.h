@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/system/work_ahead.h"
-#include "stroke/journal/entry.h"
+#include "stroke/journal/entry/entry.h"
 #include "stroke/placement/placement.h"
 
 /// \file

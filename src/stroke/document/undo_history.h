@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "stroke/document/brushes_in_hand.h"
-#include "stroke/document/layer_stack.h"
-#include "stroke/journal/mask.h"
-#include "stroke/journal/parts.h"
+#include "stroke/journal/entry/mask.h"
+#include "stroke/journal/entry/parts.h"
+#include "stroke/layers/layer_stack.h"
 
 /// \file
 /// What the last entries of a journal changed, as it was before, so that `Document::undo` need not paint anew.

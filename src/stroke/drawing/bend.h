@@ -1,6 +1,6 @@
 #pragma once
 
-#include "stroke/journal/flat_area.h"
+#include "stroke/journal/entry/flat_area.h"
 
 /// \file
 /// A flat drawing bent along a curve, for copies that follow a path on a model. Called by `tuft paint --along`.

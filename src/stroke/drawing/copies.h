@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "stroke/gesture/symmetry.h"
-#include "stroke/journal/entry.h"
+#include "stroke/journal/entry/entry.h"
 
 /// \file
 /// Symmetric copies of strokes and areas: the other flank, copies round an axis. Called by `tuft paint` and by the

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "stroke/drawing/line_width.h"
-#include "stroke/journal/entry.h"
+#include "stroke/journal/entry/entry.h"
 #include "stroke/placement/placement.h"
 
 /// \file

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "mesh/query/surface_query.h"
-#include "stroke/journal/entry.h"
+#include "stroke/journal/entry/entry.h"
 #include "stroke/placement/model_motion.h"
 
 /// \file

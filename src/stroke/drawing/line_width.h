@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "brush/preset/preset.h"
-#include "stroke/journal/samples.h"
+#include "stroke/journal/entry/samples.h"
 #include "stroke/placement/placement.h"
 
 /// \file

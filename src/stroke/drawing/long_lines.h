@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "stroke/drawing/line_width.h"
-#include "stroke/journal/samples.h"
+#include "stroke/journal/entry/samples.h"
 
 /// \file
 /// Lines that need more ink than a brush holds: larger brushes, slower strokes, and cuts where the hand dips again.

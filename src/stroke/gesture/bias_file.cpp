@@ -5,8 +5,8 @@
 #include <span>
 
 #include "core/error.h"
-#include "core/system/files.h"
-#include "core/system/toml_text.h"
+#include "core/files/files.h"
+#include "core/files/toml_text.h"
 #include "core/text/units.h"
 #include "stroke/gesture/bias_correction.h"
 

@@ -2,7 +2,7 @@
 
 #include "stroke/gesture/hand_filter.h"
 #include "stroke/gesture/hand_pressure.h"
-#include "stroke/journal/settings.h"
+#include "stroke/journal/entry/settings.h"
 
 /// \file
 /// Samples of a stroke as its settings change them: filter, then string, then roll from motion (roll.h), then pressure

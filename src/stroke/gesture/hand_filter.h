@@ -3,7 +3,7 @@
 #include <deque>
 
 #include "brush/state/tuft_state.h"
-#include "stroke/journal/samples.h"
+#include "stroke/journal/entry/samples.h"
 
 /// \file
 /// Filters of a hand's samples as they arrive: a low-pass that follows fast motion (smoothing), and a string that pulls

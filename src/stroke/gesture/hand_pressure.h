@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "stroke/journal/samples.h"
-#include "stroke/journal/settings.h"
+#include "stroke/journal/entry/samples.h"
+#include "stroke/journal/entry/settings.h"
 
 /// \file
 /// Pressure from motion, for devices that measure none: a mouse, a finger, a drawing. Called by hand.h and by the

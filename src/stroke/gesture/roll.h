@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/geometry/types.h"
-#include "stroke/journal/samples.h"
-#include "stroke/journal/settings.h"
+#include "stroke/journal/entry/samples.h"
+#include "stroke/journal/entry/settings.h"
 
 /// \file
 /// Roll of the holder: how a wide ferrule turns about its own axis.

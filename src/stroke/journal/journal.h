@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "stroke/journal/entry.h"
+#include "stroke/journal/entry/entry.h"
 
 /// \file
 /// The journal: entries in order, with undo and redo. `Document` owns one and makes texels from it.

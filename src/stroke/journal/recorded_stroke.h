@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "stroke/journal/entry.h"
+#include "stroke/journal/entry/entry.h"
 
 /// \file
 /// Strokes of a stroke file (InkML, SVG). `io/strokes` reads and writes them; entries.h makes journal entries of them.
@@ -25,7 +25,7 @@ Preparation preparation_of(const std::string& text);
 /// A stroke as its file has it. Without samples it stands for its `before` alone.
 struct RecordedStroke : StrokeSamples {
     std::string brush, ink;   ///< names of presets; empty: those of the command line
-    bool on_palette = false;  ///< on the palette, in its frame (document/palette.h)
+    bool on_palette = false;  ///< on the palette, in its frame (layers/palette.h)
     bool erases = false;      ///< `Tool::eraser`
     PlaceNames names;         ///< of layer and mask; empty: those of the command line
     std::uint64_t seed = 0;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "stroke/journal/entry.h"
+#include "stroke/journal/entry/entry.h"
 
 /// \file
 /// Tables of layers and masks from the entries of a journal, and names in stroke files resolved by them.

@@ -7,7 +7,7 @@
 #include "brush/preset/preset.h"
 #include "brush/state/tuft_state.h"
 #include "mesh/query/surface_query.h"
-#include "stroke/journal/samples.h"
+#include "stroke/journal/entry/samples.h"
 
 /// \file
 /// From flat pen data to poses of the ferrule: samples are mapped onto the surface, then the holder is posed over them.

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/ease.h"
-#include "ink/film/paste.h"
+#include "ink/film/tile/paste.h"
 #include "stroke/deposit/stamp_batch.h"
 #include "stroke/placement/placement.h"
 

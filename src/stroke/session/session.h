@@ -9,7 +9,7 @@
 #include "stroke/deposit/deposit_model.h"
 #include "stroke/gesture/hand.h"
 #include "stroke/gesture/resample.h"
-#include "stroke/journal/entry.h"
+#include "stroke/journal/entry/entry.h"
 #include "stroke/session/forecast.h"
 #include "stroke/session/report.h"
 #include "stroke/surface/surface_stencil.h"

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "stroke/journal/flat_area.h"
+#include "stroke/journal/entry/flat_area.h"
 
 /// \file
 /// Lines of a drawing as wide on the surface as they are drawn. Called by document/apply_area.h.

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "stroke/journal/fill.h"
+#include "stroke/journal/entry/fill.h"
 #include "stroke/surface/model.h"
 
 /// \file

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "stroke/journal/flat_area.h"
+#include "stroke/journal/entry/flat_area.h"
 #include "stroke/surface/even_lines.h"
 #include "stroke/surface/model.h"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "stroke/journal/mask.h"
+#include "stroke/journal/entry/mask.h"
 #include "stroke/surface/model.h"
 
 /// \file

@@ -5,7 +5,7 @@
 #include "atlas/atlas.h"
 #include "atlas/texels/cluster_graph.h"
 #include "atlas/texels/texel_map.h"
-#include "core/system/disk_cache.h"
+#include "core/files/disk_cache.h"
 #include "footprint/stamp/stamp.h"
 #include "ink/colour/base_colour.h"
 #include "mesh/query/surface_query.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/system/disk_cache.h"
+#include "core/files/disk_cache.h"
 #include "stroke/surface/model.h"
 
 /// \file

@@ -5,7 +5,7 @@
 
 #include "footprint/outline/footprint.h"
 #include "mesh/query/surface_query.h"
-#include "stroke/journal/samples.h"
+#include "stroke/journal/entry/samples.h"
 
 /// \file
 /// The stencil of a stroke on the surface: the tuft passes its edges, ink does not. Called by `StrokeSession`.

@@ -8,8 +8,8 @@
 #include "brush/preset/preset.h"
 #include "brush/tuft/ferrule.h"
 #include "core/error.h"
+#include "core/files/files.h"
 #include "core/hash.h"
-#include "core/system/files.h"
 #include "core/system/parallel.h"
 #include "io/strokes/area_lines.h"
 

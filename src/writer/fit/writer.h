@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/system/disk_cache.h"
+#include "core/files/disk_cache.h"
 #include "core/system/progress.h"
 #include "writer/fit/ink_fit.h"
 #include "writer/gesture/side_table.h"

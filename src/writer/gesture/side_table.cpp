@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "core/system/files.h"
+#include "core/files/files.h"
 
 namespace tuft::writer {
 namespace {

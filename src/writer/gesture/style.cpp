@@ -4,8 +4,8 @@
 #include <map>
 
 #include "core/error.h"
-#include "core/system/files.h"
-#include "core/system/toml_text.h"
+#include "core/files/files.h"
+#include "core/files/toml_text.h"
 #include "core/text/units.h"
 
 namespace fs = std::filesystem;

@@ -8,8 +8,8 @@
 #include <set>
 
 #include "core/error.h"
-#include "core/system/files.h"
-#include "core/system/path_fault.h"
+#include "core/files/files.h"
+#include "core/files/path_fault.h"
 #include "io/font/font.h"
 #include "writer/glyphs/outline_font.h"
 

@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "core/text/nesting.h"
-#include "io/strokes/svg_shapes.h"
+#include "io/svg/style/svg_shapes.h"
 #include "writer/glyphs/glyph_source.h"
 
 namespace tuft::writer {

@@ -2,8 +2,8 @@
 #include <pugixml.hpp>
 
 #include "core/error.h"
-#include "core/system/library_fault.h"
-#include "io/strokes/svg_shapes.h"
+#include "core/files/library_fault.h"
+#include "io/svg/style/svg_shapes.h"
 #include "writer/glyphs/glyph_source.h"
 
 namespace tuft::writer {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/system/disk_cache.h"
+#include "core/files/disk_cache.h"
 #include "core/system/progress.h"
 #include "stroke/journal/entries.h"
 #include "writer/copy/correction.h"

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <future>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/files/disk_cache.h"
+
+/// \file
+/// Pictures of a stroke of each brush (pictures/tried_stroke.h). Window thread; strokes are painted on another one.
+namespace tuft::app {
+
+/// Paints a stroke of a brush when its picture is first asked for, one at a time, and stores it in the user's cache
+/// folder by the content of the preset. `texture` and `release` need the window's OpenGL context.
+class TriedStrokes {
+  public:
+    TriedStrokes() : cache_(cache_folder("brushes")) {}
+    ~TriedStrokes();
+
+    /// Returns the texture of the brush's picture; 0 while there is none.
+    unsigned texture(const std::string& brush);
+    /// Takes what was painted, and begins the next one where `may_paint`; else stops the one in work, which is begun
+    /// again later. Returns at once.
+    void update(bool may_paint);
+    bool busy() const { return painting_.valid() || !wanted_.empty(); }
+    /// Frees the textures; they are made again from the pictures.
+    void release();
+
+  private:
+    struct Picture {
+        std::vector<std::uint8_t> rgb;  ///< empty: not painted yet, or the preset cannot be read
+        unsigned texture = 0;
+    };
+    struct Painted {
+        std::string brush;
+        std::vector<std::uint8_t> rgb;
+        bool stopped = false;
+    };
+    Painted paint(const std::string& brush) const;
+
+    DiskCache cache_;
+    std::map<std::string, Picture> pictures_;  ///< of all that were asked for
+    std::deque<std::string> wanted_;
+    std::atomic<bool> stop_{false};
+    std::future<Painted> painting_;
+};
+
+}  // namespace tuft::app

@@ -1,0 +1,209 @@
+#include "cli/commands/placing_guide.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/steps/picture_overlay.h"
+#include "core/error.h"
+#include "core/files/files.h"
+#include "core/text/units.h"
+#include "io/export/export.h"
+#include "render/brush/brush_canvas.h"
+
+namespace fs = std::filesystem;
+
+namespace tuft::cli {
+namespace {
+
+constexpr int kWidth = 960, kHeight = 720;  // pixels
+constexpr double kSpacing = 1e-3;           // metres between points of a line on the model
+constexpr double kAround = 1.7;             // width of the view over the size of the piece
+constexpr double kLeastView = 0.03;         // metres
+constexpr double kSteepest = 80;            // degrees of elevation
+constexpr double kLevelArrow = 0.4;         // rise of an arrow over its length below which it points to the back
+
+/// A piece on the model.
+struct PlacedPiece {
+    int number = 0;
+    std::vector<SurfacePath> outline;
+    SurfacePath arrow;
+    Vec3 centre{0}, normal{0, 0, 1};  // where number and arrow are
+    Vec3 middle{0};                   // of the box round it
+    double size = 0;                  // metres, of the box round it
+};
+
+class PieceOnModel {
+  public:
+    PieceOnModel(const mesh::TriangleMesh& mesh, const decal::PrintSurface& surface) : mesh_(mesh), surface_(surface) {}
+
+    /// The points of a line of the panel's plane, in parts where it leaves the surface.
+    std::vector<SurfacePath> lift(const std::vector<Vec2>& line) const {
+        std::vector<SurfacePath> paths(1);
+        for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+            const int n = std::max(1, static_cast<int>(std::ceil(glm::length(line[i + 1] - line[i]) / kSpacing)));
+            for (int k = i == 0 ? 0 : 1; k <= n; ++k) {
+                const Vec2 p = line[i] + (static_cast<double>(k) / n) * (line[i + 1] - line[i]);
+                if (const auto at = decal::locate(surface_, p)) {
+                    paths.back().points.push_back(decal::point_at(mesh_, at->triangle, at->weights));
+                    paths.back().normals.push_back(mesh::face_normal(mesh_, at->triangle));
+                } else if (!paths.back().points.empty()) {
+                    paths.emplace_back();
+                }
+            }
+        }
+        std::erase_if(paths, [](const SurfacePath& path) { return path.points.size() < 2; });
+        return paths;
+    }
+
+  private:
+    const mesh::TriangleMesh& mesh_;
+    const decal::PrintSurface& surface_;
+};
+
+/// The panel's point from which the arrow starts: that of its own triangles nearest to the middle of the film.
+Vec2 middle_of(const decal::PrintSurface& surface, const decal::Region& film) {
+    const decal::Box2 box = decal::box_of(film);
+    const Vec2 middle = 0.5 * (box.lo + box.hi);
+    Vec2 best = middle;
+    double least = 1e300;
+    for (std::size_t t = 0; t < surface.n_own; ++t) {
+        Vec2 c(0);
+        for (const std::uint32_t v : surface.faces[t]) c += surface.flat[v] / 3.0;
+        const double d = glm::length(c - middle);
+        if (d < least && decal::contains(film, c)) least = d, best = c;
+    }
+    return best;
+}
+
+PlacedPiece place_on_model(const mesh::TriangleMesh& mesh, const decal::Sheet& sheet, const decal::Piece& piece) {
+    const decal::PrintSurface& surface = sheet.surfaces[piece.surface];
+    const PieceOnModel on(mesh, surface);
+    PlacedPiece placed;
+    placed.number = piece.number;
+    Box box;
+    for (decal::Ring ring : piece.film) {
+        ring.push_back(ring.front());
+        for (SurfacePath& path : on.lift(ring)) {
+            for (const Vec3& p : path.points) box.add(p);
+            placed.outline.push_back(std::move(path));
+        }
+    }
+    const Vec2 middle = middle_of(surface, piece.film);
+    const Vec2 size = decal::box_of(piece.film).size();
+    placed.size = glm::length(size);
+    if (const auto at = decal::locate(surface, middle)) {
+        placed.centre = decal::point_at(mesh, at->triangle, at->weights);
+        placed.normal = mesh::face_normal(mesh, at->triangle);
+    }
+    placed.middle = placed.centre;
+    const auto arrow = on.lift({middle, middle + 0.18 * std::min(size.x, size.y) * piece.up});
+    if (!arrow.empty()) placed.arrow = arrow[0];
+    if (!box.empty()) {
+        placed.size = std::max(box.diagonal(), 1e-3);
+        placed.middle = box.centre();
+        Vec3 mean(0);
+        for (const SurfacePath& path : placed.outline)
+            for (const Vec3& n : path.normals) mean += n;
+        if (glm::length(mean) > 0 && glm::dot(glm::normalize(mean), placed.normal) > 0)
+            placed.normal = glm::normalize(glm::normalize(mean) + placed.normal);
+    }
+    return placed;
+}
+
+/// The view straight onto a piece, as far as the camera goes; on level ones from the front.
+View view_of(const PlacedPiece& piece, const mesh::TriangleMesh& mesh) {
+    View view;
+    view.width = kWidth;
+    view.height = kHeight;
+    const double level = std::hypot(piece.normal.x, piece.normal.y);
+    // An arrow to the back of the model points up in a picture from the front.
+    bool to_back = level < 0.2;
+    if (piece.arrow.points.size() > 1) {
+        const Vec3 arrow = piece.arrow.points.back() - piece.arrow.points.front();
+        to_back |= std::abs(arrow.z) < kLevelArrow * glm::length(arrow);
+    }
+    view.elevation = std::clamp(std::atan2(piece.normal.z, level) / kDegree, -kSteepest, kSteepest);
+    view.azimuth = to_back ? 0 : std::atan2(piece.normal.x, -piece.normal.y) / kDegree;
+    const Vec3 target = piece.middle / kMillimetre;
+    view.target_mm = {target.x, target.y, target.z};
+    const double aspect = static_cast<double>(kWidth) / kHeight;
+    view.zoom = mesh.bounds.diagonal() / std::max(kAround * aspect * piece.size, kLeastView);
+    return view;
+}
+
+const Vec3 kOwn = render::linear_colour(210, 0, 140), kOther = render::linear_colour(90, 110, 140);
+
+void write_guide_picture(const fs::path& path, const GuideRequest& request, const std::vector<PlacedPiece>& pieces,
+                         int number, const View& view, Console& console) {
+    const stroke::Model& model = request.project.model;
+    render::Image image = draw_picture({.model = model, .painting = &request.painting, .view = view}, console);
+    const render::Camera camera = camera_of(view, *model.mesh);
+    PictureOverlay overlay(image, camera, *model.query);
+    for (const bool own : {false, true})
+        for (const PlacedPiece& piece : pieces) {
+            if ((number == 0 || piece.number == number) != own) continue;
+            const Vec3 colour = own ? kOwn : kOther;
+            for (const SurfacePath& line : piece.outline) overlay.draw(line, own ? 2.5 : 1.5, colour);
+            overlay.draw_arrow(piece.arrow, own ? 3 : 1.5, colour);
+            overlay.draw_number(piece.number, piece.centre, piece.normal, own && number > 0 ? 30 : 18, colour);
+        }
+    image.rgb = overlay.rgb();
+    write_picture(path, image);
+}
+
+std::string lines_text(const GuideRequest& request, const std::vector<PlacedPiece>& pieces) {
+    const FileFrame& frame = request.project.frame;
+    const double unit = metres_per(frame.unit).value_or(kMillimetre);
+    std::string text = fmt::format("# cut lines and arrows of a decal sheet on the model, in {}, {} up\n", frame.unit,
+                                   frame.y_up ? 'y' : 'z');
+    std::size_t next = 1;
+    const auto add = [&](const SurfacePath& path) {
+        std::string line = "l";
+        for (const Vec3& p : path.points) {
+            const Vec3 q = (frame.y_up ? Vec3(p.x, p.z, -p.y) : p) / unit;
+            text += fmt::format("v {:.6g} {:.6g} {:.6g}\n", q.x, q.y, q.z);
+            line += fmt::format(" {}", next++);
+        }
+        text += line + "\n";
+    };
+    for (const PlacedPiece& piece : pieces) {
+        text += fmt::format("o piece_{}\n", piece.number);
+        for (const SurfacePath& path : piece.outline) add(path);
+        if (piece.arrow.points.size() < 2) continue;
+        text += fmt::format("o piece_{}_up\n", piece.number);
+        add(piece.arrow);
+    }
+    return text;
+}
+
+}  // namespace
+
+std::vector<fs::path> write_placing_guide(const fs::path& folder, const GuideRequest& request, Console& console) {
+    const mesh::TriangleMesh& mesh = *request.project.model.mesh;
+    std::vector<PlacedPiece> pieces;
+    for (const decal::Piece& piece : request.sheet.pieces) pieces.push_back(place_on_model(mesh, request.sheet, piece));
+    std::error_code ec;
+    fs::create_directory(folder, ec);
+    if (!fs::is_directory(folder, ec)) throw Error(folder.string(), "the folder cannot be made");
+    std::vector<fs::path> files;
+    io::write_together(folder / "lines.obj", [&](const fs::path& beside) {
+        const std::string text = lines_text(request, pieces);
+        write_file(beside / "lines.obj", text.data(), text.size());
+        files.push_back(folder / "lines.obj");
+        View all;
+        all.width = kWidth;
+        all.height = kHeight;
+        write_guide_picture(beside / "overview.png", request, pieces, 0, all, console);
+        files.push_back(folder / "overview.png");
+        for (const PlacedPiece& piece : pieces) {
+            const std::string name = fmt::format("piece-{:02}.png", piece.number);
+            write_guide_picture(beside / name, request, pieces, piece.number, view_of(piece, mesh), console);
+            files.push_back(folder / name);
+        }
+    });
+    return files;
+}
+
+}  // namespace tuft::cli

@@ -1,0 +1,202 @@
+#include "cli/device/device.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "brush/preset/preset.h"
+#include "cli/steps/commands.h"
+#include "cli/steps/steps.h"
+#include "core/files/files.h"
+#include "core/system/interrupt.h"
+#include "haptic/device/haply.h"
+#include "haptic/loop.h"
+#include "io/model/read_model.h"
+#include "mesh/repair/repair.h"
+
+namespace tuft::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using haptic::DeviceLimits;
+
+constexpr auto kStopPatience = 3000ms, kLook = 10ms;
+
+haptic::ServerFault fault_named(const std::string& name) {
+    using haptic::ServerFault;
+    if (name == "dies") return ServerFault::dies;
+    if (name == "nan") return ServerFault::not_a_number;
+    if (name == "jumps") return ServerFault::jumps;
+    if (name == "silent") return ServerFault::silent;
+    return name == "floods" ? ServerFault::floods : ServerFault::none;
+}
+
+int list_devices(const DeviceWork& a) {
+    haptic::HaplyDevice device(haptic::device_preset(a.preset), {a.host, a.port});
+    haptic::DeviceState state;
+    bool answers = false;
+    for (auto waited = 0ms; waited < 500ms && !answers; waited += kLook) {
+        check_interrupt();
+        std::this_thread::sleep_for(kLook);
+        answers = device.read(state) && device.connected();
+    }
+    nlohmann::json arms = nlohmann::json::array();
+    for (const DeviceLimits& d : haptic::device_presets()) {
+        arms.push_back({{"preset", d.name},
+                        {"title", d.title},
+                        {"max_force_n", d.max_force},
+                        {"max_stiffness_n_per_m", d.max_stiffness},
+                        {"coupling_n_per_m", d.coupling},
+                        {"workspace_mm", {1e3 * d.workspace.x, 1e3 * d.workspace.y, 1e3 * d.workspace.z}}});
+    }
+    const std::string where = fmt::format("{}:{}", a.host, a.port);
+    if (a.common.json) {
+        nlohmann::json out{{"presets", arms}, {"service", where}, {"answers", answers}};
+        if (answers) out["device_id"] = device.device_id();
+        print_json(out);
+        return 0;
+    }
+    for (const DeviceLimits& d : haptic::device_presets())
+        fmt::print("{:10}{:26}{:4.1f} N  {:3.1f} N/mm  {:.0f} x {:.0f} x {:.0f} mm\n", d.name, d.title, d.max_force,
+                   1e-3 * d.max_stiffness, 1e3 * d.workspace.x, 1e3 * d.workspace.y, 1e3 * d.workspace.z);
+    if (answers)
+        fmt::print("{}: arm {} at {:.1f}, {:.1f}, {:.1f} mm\n", where, device.device_id(), 1e3 * state.position.x,
+                   1e3 * state.position.y, 1e3 * state.position.z);
+    else
+        fmt::print("{}: no arm answers\n", where);
+    return 0;
+}
+
+int simulate_device(const DeviceWork& a) {
+    const ContactModel model = load_contact_model(a.model);
+    const haptic::TrialPlace place = haptic::place_above(*model.surface, "");
+    haptic::SimulatedArm arm(haptic::device_preset(a.preset),
+                             haptic::hand_path(motion_named(a.motion), place, brush::load_preset(a.brush)),
+                             {.delay = 1e-3 * a.delay_ms});
+    haptic::serve_simulated(
+        std::move(arm), {.port = a.port, .fault = fault_named(a.fault), .fault_after = a.fault_after},
+        [] { return !interrupted(); },
+        [&](int port) {
+            fmt::print("{} on 127.0.0.1:{}\n", a.preset, port);
+            std::cout.flush();
+        });
+    return 0;
+}
+
+std::vector<haptic::RecordedPeriod> live_recording(const DeviceWork& a, const ContactModel& model,
+                                                   const haptic::TrialPlace& place, const haptic::LawOptions& law) {
+    const brush::Preset preset = brush::load_preset(a.brush);
+    haptic::DeviceState state;
+    const auto path = haptic::hand_path(motion_named(a.motion), place, preset);
+    const std::unique_ptr<haptic::Device> device = open_device(a, path, state);
+    haptic::Loop loop(*device, haptic::HairSolver(brush::make_tuft(preset), *model.surface),
+                      {.law = law, .record = true});
+    haptic::ServoControl control;
+    const Vec3 above = place.frame.origin + (preset.length + 0.01) * place.frame.n;
+    if (a.simulate.empty()) control.workspace = workspace_at(state, above);
+    loop.set_control(control);
+    loop.start();
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(a.seconds);
+    while (std::chrono::steady_clock::now() < end && !interrupted()) std::this_thread::sleep_for(kLook);
+    loop.stop();
+    return loop.take_recording();
+}
+
+/// Of a recording: that of its first period.
+haptic::Workspace workspace_of(const std::vector<haptic::RecordedPeriod>& periods, const DeviceWork& a,
+                               const Vec3& above) {
+    if (!a.simulate.empty()) return {};
+    for (const haptic::RecordedPeriod& p : periods)
+        if (p.fresh) return workspace_at(p.state, above);
+    return {};
+}
+
+int record_device(const DeviceWork& a) {
+    check_extension(a.output, {".csv"});
+    check_output(a.output);
+    const ContactModel model = load_contact_model(a.model);
+    const haptic::TrialPlace place = haptic::place_above(*model.surface, "");
+    const brush::Preset preset = brush::load_preset(a.brush);
+    const haptic::LawOptions law{.limits = haptic::device_preset(a.simulate.empty() ? a.preset : a.simulate),
+                                 .gain = preset.force_gain,
+                                 .restore = a.restore};
+    const bool replays = !a.replay.empty();
+    std::vector<haptic::RecordedPeriod> periods =
+        replays ? haptic::read_recording(a.replay) : live_recording(a, model, place, law);
+    const Vec3 above = place.frame.origin + (preset.length + 0.01) * place.frame.n;
+    std::size_t different = 0;
+    double greatest = 0;
+    if (replays) {
+        const std::vector<Vec3> forces =
+            haptic::replay_forces(periods, haptic::HairSolver(brush::make_tuft(preset), *model.surface), law,
+                                  workspace_of(periods, a, above));
+        for (std::size_t i = 0; i < forces.size(); ++i) {
+            different += forces[i] != periods[i].force;
+            periods[i].force = forces[i];
+        }
+    }
+    for (const haptic::RecordedPeriod& p : periods) greatest = std::max(greatest, glm::length(p.force));
+    std::ostringstream table;
+    haptic::write_recording(table, periods);
+    write_file(a.output, table.str().data(), table.str().size());
+    nlohmann::json out{{"wrote", a.output.string()}, {"periods", periods.size()}, {"greatest_force_n", greatest}};
+    if (replays) out["different"] = different;
+    if (a.common.json)
+        print_json(out);
+    else
+        fmt::print("wrote {}: {} periods, up to {:.2f} N{}\n", a.output.string(), periods.size(), greatest,
+                   replays ? fmt::format("; {} other than recorded", different) : "");
+    return 0;
+}
+
+}  // namespace
+
+ContactModel load_contact_model(const std::filesystem::path& file) {
+    std::filesystem::path path = file.empty() ? "bowl" : file;
+    if (!path.has_extension() && !path.has_parent_path()) path = data_folder() / "models" / (path.string() + ".ply");
+    mesh::RepairOptions options;
+    options.metres_per_unit = io::metres_per_unit_of(path).value_or(1e-3);
+    ContactModel model;
+    model.mesh = std::make_unique<mesh::TriangleMesh>(mesh::build_surface(io::read_model(path), options).mesh);
+    model.surface = std::make_unique<mesh::SurfaceQuery>(*model.mesh);
+    return model;
+}
+
+haptic::HandMotion motion_named(const std::string& name) {
+    for (int i = 0; i <= static_cast<int>(haptic::HandMotion::slide); ++i)
+        if (haptic::name_of(static_cast<haptic::HandMotion>(i)) == name) return static_cast<haptic::HandMotion>(i);
+    throw UsageError(Message("unknown motion '{}'", name));
+}
+
+std::unique_ptr<haptic::Device> open_device(const DeviceWork& a, const haptic::HandPath& path,
+                                            haptic::DeviceState& state) {
+    if (!a.simulate.empty())
+        return std::make_unique<haptic::SimulatedDevice>(
+            haptic::SimulatedArm(haptic::device_preset(a.simulate), path, {.delay = 1e-3 * a.delay_ms}));
+    auto device =
+        std::make_unique<haptic::HaplyDevice>(haptic::device_preset(a.preset), haptic::HaplyAddress{a.host, a.port});
+    for (auto waited = 0ms; waited < kStopPatience; waited += kLook) {
+        check_interrupt();
+        if (device->read(state)) return device;
+        std::this_thread::sleep_for(kLook);
+    }
+    throw Error(Message("{}:{}: no arm answers; start its service, or 'tuft device simulate'", a.host, a.port));
+}
+
+haptic::Workspace workspace_at(const haptic::DeviceState& state, const Vec3& root) {
+    return haptic::Workspace{}.regripped(state.position, root);
+}
+
+int run(const DeviceWork& a) {
+    if (a.what == "list") return list_devices(a);
+    if (a.what == "simulate") return simulate_device(a);
+    if (a.what == "record") return record_device(a);
+    return test_device(a);
+}
+
+}  // namespace tuft::cli

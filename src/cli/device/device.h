@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "cli/arguments/arguments.h"
+#include "haptic/device/device.h"
+#include "haptic/trial.h"
+
+/// \file
+/// Functions that the commands of `tuft device` share. Main thread.
+namespace tuft::cli {
+
+/// A model that the simulated or real arm touches.
+struct ContactModel {
+    std::unique_ptr<mesh::TriangleMesh> mesh;
+    std::unique_ptr<mesh::SurfaceQuery> surface;
+};
+/// Reads a model; `file` may be the name of a shipped one, such as "bowl".
+ContactModel load_contact_model(const std::filesystem::path& file);
+
+/// Throws `UsageError` for an unknown name.
+haptic::HandMotion motion_named(const std::string& name);
+
+/// Opens the arm of the arguments, simulated with `path` or real. `state` becomes its first state. Throws `Error` where
+/// no service answers within 3 s.
+std::unique_ptr<haptic::Device> open_device(const DeviceWork& arguments, const haptic::HandPath& path,
+                                            haptic::DeviceState& state);
+
+/// Returns the workspace in which the arm at `state` has the tuft's root at `root`.
+haptic::Workspace workspace_at(const haptic::DeviceState& state, const Vec3& root);
+
+/// Performs `tuft device test`. Returns the exit status.
+int test_device(const DeviceWork& arguments);
+
+}  // namespace tuft::cli

@@ -1,0 +1,119 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "brush/preset/preset.h"
+#include "cli/device/device_trials.h"
+#include "cli/steps/steps.h"
+#include "core/system/allocations.h"
+#include "core/system/interrupt.h"
+#include "haptic/loop.h"
+
+/// `tuft device test`: the figures of stability, safety and loop.
+namespace tuft::cli {
+namespace {
+
+using namespace std::chrono_literals;
+int slowest_stop(const DeviceWork& a, const Places& places) {
+    const brush::Tuft tuft = brush::make_tuft(brush::load_preset(a.brush));
+    const auto path = haptic::hand_path(haptic::HandMotion::rest, places.place[0], tuft.preset);
+    int slowest = 0;
+    for (const haptic::Trouble trouble : haptic::kTroubles) {
+        const int periods =
+            haptic::periods_to_stop(tuft, *places.surface[0], path, trial_options(a, tuft.preset), trouble, 2.5);
+        if (periods < 0) throw Error("the force of the simulated arm does not end");
+        slowest = std::max(slowest, periods);
+    }
+    return slowest;
+}
+
+/// The loop by the wall clock; with a real arm in the air, far from the model.
+haptic::LoopStatus run_loop(const DeviceWork& a, const Places& places) {
+    const brush::Preset preset = brush::load_preset(a.brush);
+    const haptic::HandPath path = haptic::hand_path(haptic::HandMotion::circles, places.place[0], preset);
+    haptic::DeviceState state;
+    const std::unique_ptr<haptic::Device> device = open_device(a, path, state);
+    const haptic::LawOptions law{.limits = device->limits(), .gain = preset.force_gain, .restore = a.restore};
+    haptic::Loop loop(*device, haptic::HairSolver(brush::make_tuft(preset), *places.surface[0]),
+                      {.law = law, .count_allocations = allocations_of_this_thread});
+    haptic::ServoControl control;
+    if (a.simulate.empty()) {
+        const Frame& f = places.place[0].frame;
+        control.workspace = workspace_at(state, f.origin + 1.0 * f.n);
+    }
+    loop.set_control(control);
+    loop.start();
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(a.seconds);
+    haptic::SolvedPose pose;
+    while (std::chrono::steady_clock::now() < end && !interrupted()) {
+        while (loop.pop(pose)) {
+        }
+        std::this_thread::sleep_for(20ms);
+    }
+    loop.stop();
+    check_interrupt();
+    return loop.status();
+}
+
+double percent(std::uint64_t part, std::uint64_t whole) {
+    return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0;
+}
+
+double quantile(std::vector<float> values, double q) {
+    if (values.empty()) return 0;
+    std::sort(values.begin(), values.end());
+    return static_cast<double>(values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))]);
+}
+
+}  // namespace
+
+int test_device(const DeviceWork& a) {
+    Console console(a.common.quiet);
+    const Places places = places_of(a);
+    nlohmann::json out;
+    if (!a.simulate.empty()) {
+        haptic::device_preset(a.simulate);
+        const Trials trials = run_trials(a, places, console);
+        const haptic::TrialReport& worst = trials.worst;
+        const std::vector<float>& solves = worst.seconds;
+        out = {{"least_energy_uj", 1e6 * worst.least_energy},
+               {"least_energy_at", trials.least_energy_at},
+               {"least_energy_with_arm_uj", 1e6 * worst.least_with_arm},
+               {"largest_step_n", worst.largest_step},
+               {"largest_step_at", trials.largest_step_at},
+               {"largest_step_hard_n", worst.largest_step_hard},
+               {"largest_force_n", worst.largest_force},
+               {"trials", trials.count},
+               {"simulated_s", static_cast<double>(worst.periods) * haptic::kPeriod},
+               {"contacts", worst.contacts},
+               {"most_evaluations", worst.most_evaluations},
+               {"unconverged_percent", percent(worst.unconverged, worst.solves)},
+               {"solve_us",
+                {{"p50", 1e6 * quantile(solves, 0.5)},
+                 {"p999", 1e6 * quantile(solves, 0.999)},
+                 {"worst", 1e6 * quantile(solves, 1)}}},
+               {"stop_ms", slowest_stop(a, places)}};
+    }
+    const haptic::LoopStatus loop = run_loop(a, places);
+    console.clear();
+    out["late_percent"] = percent(loop.cycle.late, loop.cycle.count);
+    out["worst_cycle_ms"] = 1e3 * loop.cycle.worst;
+    out["p999_cycle_ms"] = 1e3 * loop.cycle.quantile(0.999);
+    out["allocations"] = loop.allocations;
+    out["late_solves_percent"] = percent(loop.late_solves, loop.solves);
+    out["lost_poses"] = loop.lost_poses;
+    out["realtime"] = loop.realtime;
+    out["memory_locked"] = loop.locked;
+    if (!loop.realtime)
+        console.note("the system allows no real-time priority: cycles will be late (ulimit -r, or CAP_SYS_NICE)");
+    if (a.common.json)
+        print_json(out);
+    else
+        for (const auto& [key, value] : out.items()) fmt::print("{:26}{}\n", key, value.dump());
+    return 0;
+}
+
+}  // namespace tuft::cli

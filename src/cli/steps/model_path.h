@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "cli/arguments/arguments.h"
+#include "cli/steps/console.h"
+#include "cli/steps/place.h"
+#include "writer/layout/text_layout.h"
+
+/// \file
+/// Paths on a model, and drawings repeated along them: `tuft write --direction`, `tuft paint --along`. Main thread.
+namespace tuft::cli {
+
+/// A path, and the length on it at which the middle of a text stands, metres.
+struct PathOnModel {
+    writer::ModelPath path;
+    double middle = 0;
+};
+
+/// Returns the level section of the model at `--place`, else in front of it at 0.62 of its height (a rim).
+PathOnModel rim_path(const stroke::Model& model, const Paint& arguments);
+
+/// Returns the sharp edge or border nearest to `--place` (`writer::feature_line`).
+PathOnModel edge_path(const stroke::Model& model, const Paint& arguments);
+
+/// Returns the first flat line of a stroke file, placed as the arguments say. A line whose ends meet is closed. Throws
+/// `Error` where it has none.
+PathOnModel curve_path(const stroke::Model& model, const Paint& arguments, const std::filesystem::path& file,
+                       Console& console);
+
+/// Number of copies of `--repeat`: 0 for "fit". Throws `UsageError` for any other text.
+int repeats_of(const std::string& text);
+
+/// Repeats the flat strokes that have no place of their own along the path of `--along`: N copies L / N apart on a path
+/// of length L, each bent by its geodesic curvature (stroke/drawing/bend.h). With "fit" N is the number nearest to L
+/// over the drawing's width, and the drawing is scaled so that neighbours meet; with a number so, too, unless
+/// `--place-width` gives its width. On a closed path the first copy stands where the path begins, on an open one half
+/// a step from its end. Then the strokes are as `place_strokes` leaves them.
+PlacedDrawing place_along(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
+                          const Paint& arguments, Console& console);
+
+}  // namespace tuft::cli
