@@ -75,12 +75,12 @@ int main() {
         }
         NodeContents given{}, taken{};
         for (int touch = 0; touch < 3; ++touch) {
-            transfer(tile.canvas, {{0, tile.coverage, tile.area, 4e-5}, tile.places, tile.hats}, p, given);
+            transfer(tile.canvas, {{{0, tile.coverage, tile.area}, 4e-5}, tile.places, tile.hats}, p, given);
             p.deposit.mix = {0.2f, 0.1f, 0.05f};
-            add(deposit(tile.canvas, 0, tile.coverage, tile.area, 3e-5, p.deposit));
-            deposit_mixed(tile.canvas, {0, tile.coverage, tile.area, 3e-5}, tile.hats, p.deposit, mixes, given);
+            add(deposit(tile.canvas, {0, tile.coverage, tile.area}, p.deposit, deposit_law(p.deposit, 3e-5)));
+            deposit_mixed(tile.canvas, {{0, tile.coverage, tile.area}, 3e-5}, tile.hats, p.deposit, mixes, given);
             const Plane before = open_pigment(tile.canvas, 0);
-            deposit_paste(tile.canvas, {{0, tile.coverage, tile.area, 5e-5}, tile.places, tile.hats},
+            deposit_paste(tile.canvas, {{{0, tile.coverage, tile.area}, 5e-5}, tile.places, tile.hats},
                           {.target = 12, .exchange = 0.2, .free_capacity = 3, .furrows = furrows}, mixes, before,
                           {given, taken});
         }

@@ -28,12 +28,17 @@ Ink plain(const std::string& name, std::vector<std::pair<std::string, double>> p
 
 const Texels kArea = random_texels(99, 0.5e-8, 1.5e-8);  // texels of about 0.1 mm
 
+/// Deposits a stamp that travels `ds` metres on tile 0.
+double deposit_over(Canvas& canvas, const Texels& coverage, double ds, const DepositParams& params) {
+    return deposit(canvas, {0, coverage, kArea}, params, deposit_law(params, ds));
+}
+
 TEST(Deposit, FollowsTheRateLawForAnySteps) {
     const Ink ink = plain("black");
     for (const double step : {0.05e-3, 0.1e-3, 0.5e-3, 1e-3}) {
         Canvas canvas(1);
         DepositParams params{.mix = mix_of(canvas, ink), .target = 1.6f, .transfer_length = 0.5e-3f};
-        for (double s = 0; s < 1e-3 - 1e-9; s += step) deposit(canvas, 0, constant(0.75f), kArea, step, params);
+        for (double s = 0; s < 1e-3 - 1e-9; s += step) deposit_over(canvas, constant(0.75f), step, params);
         // w(s) = c f (1 − exp(−s/s0)); float rounding per step 6e-8, at most 20 steps.
         const double expected = 1.6 * 0.75 * (1 - std::exp(-2.0));
         EXPECT_NEAR((*canvas.plane(0, 0))[100], expected, 3e-6) << step;
@@ -44,7 +49,7 @@ TEST(Deposit, PassingAgainNeitherBeadsNorLosesTheEdge) {
     Canvas canvas(1);
     const Texels coverage = random_texels(3, 0, 1);
     const DepositParams params{.mix = mix_of(canvas, plain("black")), .target = 1.8f};
-    for (int i = 0; i < 200; ++i) deposit(canvas, 0, coverage, kArea, 1e-3, params);
+    for (int i = 0; i < 200; ++i) deposit_over(canvas, coverage, 1e-3, params);
     for (int t = 0; t < kN; ++t) EXPECT_NEAR((*canvas.plane(0, 0))[t], 1.8f * coverage[t], 2e-6f) << "the edge keeps f";
 }
 
@@ -60,8 +65,8 @@ TEST(Deposit, AnEmptyPlaneChangesNothing) {
         beside.touch(0, beside.add_pigment(plain("white").parts[0].pigment));
         for (int i = 0; i < 40; ++i) {
             params.target = i % 3 == 0 ? 0.7f : 1.9f;
-            const double a = deposit(alone, 0, coverage, kArea, 0.03e-3, params);
-            const double b = deposit(beside, 0, coverage, kArea, 0.03e-3, params);
+            const double a = deposit_over(alone, coverage, 0.03e-3, params);
+            const double b = deposit_over(beside, coverage, 0.03e-3, params);
             ASSERT_EQ(a, b) << i;
         }
         EXPECT_EQ(*alone.plane(0, 0), *beside.plane(0, 0));
@@ -83,7 +88,7 @@ TEST(Deposit, ATexelHalfCoveredLooksHalfCovered) {
             .mix = mix_of(canvas, ink), .target = static_cast<float>(ink.film), .extinction = extinction_of(ink)};
         Texels coverage;
         for (int t = 0; t < kN; ++t) coverage[t] = static_cast<float>(t) / (kN - 1);
-        for (int i = 0; i < 50; ++i) deposit(canvas, 0, coverage, kArea, 1e-3, params);
+        for (int i = 0; i < 50; ++i) deposit_over(canvas, coverage, 1e-3, params);
         EXPECT_NEAR((*canvas.plane(0, 0))[kN - 1], ink.film, 1e-4 * ink.film)
             << "1 − f hidden is near 0 there and has lost digits";
         const TileAppearance look = shade_tile(canvas, 0, substrate);
@@ -99,8 +104,9 @@ TEST(Deposit, GoalsFollowTheLogarithm) {
     const Texels coverage = random_texels(4, 0, 1);
     for (const double extinction : {0.01, 1.0, 4.0, 100.0}) {
         Canvas canvas(1);
-        deposit(canvas, 0, coverage, kArea, 1e6,
-                {.mix = mix_of(canvas, plain("black")), .target = 1.5f, .extinction = static_cast<float>(extinction)});
+        deposit_over(
+            canvas, coverage, 1e6,
+            {.mix = mix_of(canvas, plain("black")), .target = 1.5f, .extinction = static_cast<float>(extinction)});
         const double e = std::min(extinction, 12 / 1.5);
         for (int t = 0; t < kN; ++t) {
             const double x = 1 - coverage[t] * -std::expm1(-e * 1.5);
@@ -115,7 +121,7 @@ TEST(Deposit, GivenInkIsWhatTheTexelsGained) {
     const Mix mix = mix_of(canvas, plain("purple", {{"red", 0.3}, {"blue", 0.6}}));
     double given = 0;
     for (int i = 0; i < 300; ++i)
-        given += deposit(canvas, 0, random_texels(i, 0, 1), kArea, 2e-5, {.mix = mix, .target = 1.8f});
+        given += deposit_over(canvas, random_texels(i, 0, 1), 2e-5, {.mix = mix, .target = 1.8f});
     double on_texels = 0, red = 0;
     for (int t = 0; t < kN; ++t) {
         const double area = kArea[t];
@@ -132,25 +138,23 @@ TEST(Deposit, GivenInkIsWhatTheTexelsGained) {
 TEST(Deposit, AnotherInkGoesOnTopUpToTheCapacity) {
     Canvas canvas(1);
     const Mix black = mix_of(canvas, plain("black")), white = mix_of(canvas, plain("white"));
-    for (int i = 0; i < 50; ++i)
-        deposit(canvas, 0, constant(1), kArea, 1e-3, {.mix = black, .target = 2, .capacity = 3});
+    for (int i = 0; i < 50; ++i) deposit_over(canvas, constant(1), 1e-3, {.mix = black, .target = 2, .capacity = 3});
     const float black_before = (*canvas.plane(0, 0))[5];
-    for (int i = 0; i < 50; ++i)
-        deposit(canvas, 0, constant(1), kArea, 1e-3, {.mix = white, .target = 2, .capacity = 3});
+    for (int i = 0; i < 50; ++i) deposit_over(canvas, constant(1), 1e-3, {.mix = white, .target = 2, .capacity = 3});
     EXPECT_EQ((*canvas.plane(0, 0))[5], black_before) << "what lies there stays";
     EXPECT_NEAR(black_before, 2, 1e-6);
     EXPECT_NEAR((*canvas.plane(0, 1))[5], 1, 1e-6) << "no more than the capacity in all";
-    const double more = deposit(canvas, 0, constant(1), kArea, 1e-3, {.mix = black, .target = 9, .capacity = 3});
+    const double more = deposit_over(canvas, constant(1), 1e-3, {.mix = black, .target = 9, .capacity = 3});
     EXPECT_LE(more, 1e-6 * 1e-8 * kN);
 }
 
 TEST(Deposit, NothingWantedTouchesNothing) {
     Canvas canvas(1);
     const Mix mix = mix_of(canvas, plain("black"));
-    EXPECT_EQ(deposit(canvas, 0, constant(0), kArea, 1e-3, {.mix = mix}), 0);
-    EXPECT_EQ(deposit(canvas, 0, constant(1), kArea, 0, {.mix = mix}), 0);
-    EXPECT_EQ(deposit(canvas, 0, constant(1), kArea, 1e-3, {.mix = mix, .target = 0}), 0);
-    EXPECT_EQ(deposit(canvas, 0, constant(1), kArea, 1e-3, {}), 0) << "an empty tuft";
+    EXPECT_EQ(deposit_over(canvas, constant(0), 1e-3, {.mix = mix}), 0);
+    EXPECT_EQ(deposit_over(canvas, constant(1), 0, {.mix = mix}), 0);
+    EXPECT_EQ(deposit_over(canvas, constant(1), 1e-3, {.mix = mix, .target = 0}), 0);
+    EXPECT_EQ(deposit_over(canvas, constant(1), 1e-3, {}), 0) << "an empty tuft";
     EXPECT_FALSE(canvas.touched(0));
     EXPECT_TRUE(canvas.take_dirty().empty());
 }
@@ -162,7 +166,7 @@ TEST(Deposit, BitsArePinnedForEveryInstructionSet) {
     std::array<Texels, 2> w{};
     for (int i = 0; i < 40; ++i) {
         const Texels f = random_texels(i, 0, 1);
-        deposit(canvas, 0, f, kArea, 7e-5, {.mix = mix, .target = 1.8f, .capacity = 1.5f});
+        deposit_over(canvas, f, 7e-5, {.mix = mix, .target = 1.8f, .capacity = 1.5f});
         const auto rate = static_cast<float>(-std::expm1(-7e-5 / static_cast<double>(DepositParams{}.transfer_length)));
         for (int t = 0; t < kN; ++t) {
             float inverse0 = 1.0f / mix[0], inverse1 = 1.0f / mix[1];

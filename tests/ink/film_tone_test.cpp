@@ -95,7 +95,7 @@ TEST(FilmTone, IsAFactorOnTheFilmOfADeposit) {
         Texels goal;
         film_goals(goal, coverage, params);
         double given = 0;
-        for (int i = 0; i < 60; ++i) given += deposit(canvas, {0, coverage, area, 1e-3}, params, law, tone);
+        for (int i = 0; i < 60; ++i) given += deposit(canvas, {0, coverage, area}, params, law, tone);
         double there = 0;
         for (int t = 0; t < kN; ++t) {
             double film = 0;

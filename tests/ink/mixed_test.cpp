@@ -184,7 +184,7 @@ TEST(DepositMixed, DepositsEachInkUnderItsHairAndReportsWhatIsStored) {
     const DepositParams params{.target = 1.6f};
     NodeContents given{};
     for (int i = 0; i < 5; ++i)
-        deposit_mixed(canvas, {0, coverage, area, 0.1e-3}, hats_over(coverage), params, mixes, given);
+        deposit_mixed(canvas, {{0, coverage, area}, 0.1e-3}, hats_over(coverage), params, mixes, given);
     for (int p = 0; p < 2; ++p) {
         double stored = 0, booked = 0;
         for (int t = 0; t < kN; ++t)
@@ -222,8 +222,8 @@ TEST(DepositMixed, EqualsDepositForOneInkAndDoesNotAccumulateForChangingInks) {
     mixes[kWater].fill(0.4f);
     NodeContents given{};
     for (int i = 0; i < 4; ++i) {
-        deposit(one, 0, coverage, area, 0.05e-3, params);
-        deposit_mixed(mixed, {0, coverage, area, 0.05e-3}, hats_over(coverage), params, mixes, given);
+        deposit(one, {0, coverage, area}, params, deposit_law(params, 0.05e-3));
+        deposit_mixed(mixed, {{0, coverage, area}, 0.05e-3}, hats_over(coverage), params, mixes, given);
     }
     for (int t = 0; t < kN; ++t) EXPECT_NEAR((*mixed.plane(0, 0))[t], (*one.plane(0, 0))[t], 2e-6) << t;
 

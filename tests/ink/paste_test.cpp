@@ -124,7 +124,8 @@ TEST(Paste, ItIsDepositedAndPloughedAndEachPigmentIsConserved) {
     const auto pass = [&](const NodeMixes& mixes, const Plane& before) {
         const double had[] = {total(0), total(1)};
         Pass out;
-        deposit_paste(canvas, {{0, coverage, area, 5e-5}, places, hats}, params, mixes, before, {out.given, out.taken});
+        deposit_paste(canvas, {{{0, coverage, area}, 5e-5}, places, hats}, params, mixes, before,
+                      {out.given, out.taken});
         for (int p = 0; p < 2; ++p) {
             const double kept = sum_of(out.given, p) - sum_of(out.taken, p);
             // Doubles of what floats took; 256 of them.

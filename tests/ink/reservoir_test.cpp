@@ -153,9 +153,10 @@ TEST(Reservoir, TuftAndTexelsTogetherKeepTheInk) {
     for (int i = 0; i < 1500; ++i) {
         const StampContact contact{.moment_factor = 0.5, .width = 5e-3, .area = 4 * kN * 4e-6};
         const DepositParams params = stamp_deposit(tuft, ink, contact, substrate);
+        const Texels coverage = random_texels(i, 0, 1);
         double given = 0;
         for (std::uint32_t slot = 0; slot < 4; ++slot)
-            given += deposit(canvas, (i / 25 + slot) % kSlots, random_texels(i, 0, 1), area, 1e-4, params);
+            given += deposit(canvas, {(i / 25 + slot) % kSlots, coverage, area}, params, deposit_law(params, 1e-4));
         take(tuft, given);
     }
     double on_texels = 0;

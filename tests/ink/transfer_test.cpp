@@ -51,7 +51,7 @@ struct Touching {
         refresh(liquid, tuft, touch, nodes(), areas(), step);
         const TransferParams p = transfer_params(liquid, tuft, touch, areas(), deposit, step);
         NodeContents given{};
-        transfer(canvas, {{0, coverage, area, ds}, places, hats}, p, given);
+        transfer(canvas, {{{0, coverage, area}, ds}, places, hats}, p, given);
         for (int node = 0; node < kNodes; ++node)
             for (int k = 0; k < Reservoir::kPlanes; ++k) liquid.content[node][k] -= given[node][k];
     }
@@ -203,7 +203,7 @@ TEST(Transfer, OnADrySurfaceItEqualsDeposit) {
     p.mix = mix_of(other, load_ink("gamboge"));
     for (int i = 0; i < 40; ++i) {
         t.move(0.1e-3, 2e-3);
-        deposit(other, 0, t.coverage, t.area, 0.1e-3, p);
+        deposit(other, {0, t.coverage, t.area}, p, deposit_law(p, 0.1e-3));
     }
     const int yellow = 1;
     for (int i = 0; i < kN; ++i) EXPECT_NEAR((*t.canvas.plane(0, yellow))[i], (*other.plane(0, 0))[i], 2e-3) << i;

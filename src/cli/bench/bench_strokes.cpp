@@ -172,7 +172,7 @@ double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps
             for (const footprint::TileJob& job : jobs.tiles) {
                 const atlas::TexelTile& tile = model.texels.tiles[job.slot];
                 if (footprint::evaluate_tile(model.texels, jobs, job, unpacked, exposure))
-                    ink::deposit(canvas, {job.slot, exposure, tile.area, model.atlas.texel_size}, params, law);
+                    ink::deposit(canvas, {job.slot, exposure, tile.area}, params, law);
             }
         }
         runs.push_back((cpu_seconds() - start) / stamps * 1e6);

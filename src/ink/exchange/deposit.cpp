@@ -181,14 +181,9 @@ void film_goals(std::span<float, kN> goal, std::span<const float, kN> coverage, 
     law_goals(goal.data(), coverage.data(), params.target, deposit_law(params, 0), kN);
 }
 
-double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, std::span<const float, kN> area,
-               double ds, const DepositParams& params) {
-    return deposit(canvas, {slot, coverage, area, ds}, params, deposit_law(params, ds));
-}
-
-double deposit(Canvas& canvas, const StampedTile& tile, const DepositParams& params, const DepositLaw& law,
+double deposit(Canvas& canvas, const CoveredTile& tile, const DepositParams& params, const DepositLaw& law,
                std::span<const float> tone) {
-    const auto& [slot, coverage, area, ds] = tile;
+    const auto& [slot, coverage, area] = tile;
     // Nothing happens in rows without coverage.
     int begin = 0, end = kN;
     while (begin < end && is_bare(&coverage[begin])) begin += kRow;

@@ -34,6 +34,7 @@ struct DepositLaw {
     float rate = 0;                            ///< 1 − exp(−ds/s0)
     float hidden = 0, inverse_extinction = 0;  ///< 1 − exp(−ε c) and 1/ε; 0: g(f) = c f
 };
+/// `ds`: metres of travel of the stamp; at 0 nothing is deposited.
 DepositLaw deposit_law(const DepositParams& params, double ds);
 
 /// Computes g(f) of `deposit` for a tile: the film that texels of coverage f converge to.
@@ -51,14 +52,12 @@ void film_goals(std::span<float, atlas::kTileTexels> goal, std::span<const float
 /// contact so that a half-covered texel looks half covered: this preserves the antialiasing of f although a film
 /// hides exponentially. Another ink is added to what is there; nothing is removed.
 ///
-/// `coverage` [256], 0–1; `area` [256], m² of surface per texel; `ds` metres of travel of the stamp. Returns the
-/// ink given, film·m²: the sum of the stored amounts times `area`, so tuft and texels balance. Different threads
-/// may process different slots. The bits do not depend on the instruction set. Cost: about 0.2 µs.
+/// `law`: `deposit_law` of the same `params`, which holds the travel ds of the stamp. `tone` [256]: factor on g(f) of
+/// each texel, about 1 (film_tone.h); empty: 1.
 ///
-/// `tone` [256]: factor on g(f) of each texel, about 1 (film_tone.h); empty: 1.
-double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> coverage,
-               std::span<const float, atlas::kTileTexels> area, double ds, const DepositParams& params);
-double deposit(Canvas& canvas, const StampedTile& tile, const DepositParams& params, const DepositLaw& law,
+/// Returns the ink given, film·m²: the sum of the stored amounts times the texels' areas, so tuft and texels balance.
+/// Different threads may process different slots. The bits do not depend on the instruction set. Cost: about 0.2 µs.
+double deposit(Canvas& canvas, const CoveredTile& tile, const DepositParams& params, const DepositLaw& law,
                std::span<const float> tone = {});
 
 }  // namespace tuft::ink

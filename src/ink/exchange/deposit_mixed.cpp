@@ -71,7 +71,8 @@ NodeMixes mixes_within(const Reservoir& tuft, const NodeContact& nodes, double t
 
 void deposit_mixed(Canvas& canvas, const StampedTile& tile, const HatBasis& hats, const DepositParams& params,
                    const NodeMixes& mixes, NodeContents& given) {
-    const auto& [slot, coverage, area, ds] = tile;
+    const auto& [covered, ds] = tile;
+    const auto& [slot, coverage, area] = covered;
     if (hats.count == 0 || !(params.target > 0) || !(ds > 0)) return;
     alignas(64) Texels goal, all{}, sum{}, part, film;
     alignas(64) std::array<Texels, kMaxPigments> mix, dw;

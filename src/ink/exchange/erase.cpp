@@ -106,7 +106,8 @@ EraseStart erase_start(const Canvas& canvas, std::uint32_t slot) {
 }
 
 Amounts erase(Canvas& canvas, const StampedTile& tile, const EraseStart& start, const EraseParams& params) {
-    const auto& [slot, coverage, area, ds] = tile;
+    const auto& [covered, ds] = tile;
+    const auto& [slot, coverage, area] = covered;
     Amounts gone;
     if (!canvas.touched(slot) || !(ds > 0) || !(params.strength > 0)) return gone;
     const Plane film = erase_start(canvas, slot).film;

@@ -9,12 +9,17 @@
 /// Arguments that the exchanges of one stamp with one tile share. Filled by `stroke` for every tile of every stamp.
 namespace tuft::ink {
 
-/// One stamp on one tile. All fields are required; the spans must outlive the call.
-struct StampedTile {
+/// What a stamp covers of one tile. All fields are required; the spans must outlive the call.
+struct CoveredTile {
     std::uint32_t slot;
     std::span<const float, atlas::kTileTexels> coverage;  ///< [256] 0–1
     std::span<const float, atlas::kTileTexels> area;      ///< [256] m² of surface per texel, > 0
-    double ds;                                            ///< metres of travel of the stamp, >= 0
+};
+
+/// One stamp on one tile. All fields are required.
+struct StampedTile {
+    CoveredTile covered;
+    double ds;  ///< metres of travel of the stamp, >= 0
 };
 
 /// The same with the contact patch over the tile. The references must outlive the call.

@@ -254,7 +254,8 @@ TransferParams transfer_params(const SurfaceLiquid& liquid, const Reservoir& tuf
 }
 
 void transfer(Canvas& canvas, const ContactTile& tile, const TransferParams& params, NodeContents& given) {
-    const auto& [slot, coverage, area, ds] = tile.stamp;
+    const auto& [covered, ds] = tile.stamp;
+    const auto& [slot, coverage, area] = covered;
     const HatBasis& hats = tile.hats;
     if (hats.count == 0) return;
     prefetch(canvas.liquid(slot, Liquid::film));

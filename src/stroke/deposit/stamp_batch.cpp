@@ -77,16 +77,17 @@ void StampBatch::write_tile(std::span<const TileStamp> stamps, std::span<const i
         if (!footprint::evaluate_tile(target_.texels(), plan, plan.tiles[stamps[k].tile], unpacked, exposure)) continue;
         const Stamp& stamp = batch_[stamps[k].stamp];
         if (mask) mask->apply(slot, exposure);
+        const ink::CoveredTile covered{slot, exposure, tile.area};
         if (!erased.empty()) {
-            erased[k] = ink::erase(target_.canvas(), {slot, exposure, tile.area, stamp.ds}, erase_starts_.at(slot),
-                                   {.strength = stamp.erases});
+            erased[k] =
+                ink::erase(target_.canvas(), {covered, stamp.ds}, erase_starts_.at(slot), {.strength = stamp.erases});
             continue;
         }
         if (!toned) toned = find_tone(slot, batch_[stamps[stamps.size() / 2].stamp], tone);
         if (stamp.by_hair) target_.expose_grain(slot, exposure, stamp.grain_film);
         ink::DepositParams ink = stamp.ink;
         ink.capacity = target_.capacity(slot, ink.capacity);
-        given[k] = ink::deposit(target_.canvas(), {slot, exposure, tile.area, stamp.ds}, ink, laws[stamps[k].stamp],
+        given[k] = ink::deposit(target_.canvas(), covered, ink, laws[stamps[k].stamp],
                                 *toned ? std::span<const float>(tone) : std::span<const float>());
     }
 }

@@ -13,7 +13,7 @@ void add(ink::NodeContents& sum, const ink::NodeContents& part) {
 // `tile`: a StampExposure::Tile.
 template <class Tile>
 ink::StampedTile stamped(const Tile& tile, const StampTarget& target, double ds) {
-    return {tile.slot, tile.exposure, target.texels().tiles[tile.slot].area, ds};
+    return {{tile.slot, tile.exposure, target.texels().tiles[tile.slot].area}, ds};
 }
 
 }  // namespace
