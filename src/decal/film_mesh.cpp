@@ -300,13 +300,6 @@ std::vector<std::uint32_t> cut(FilmMesh& film, std::uint32_t label, const Plane&
     return labels;
 }
 
-Weights centre_weights(const FilmMesh& film, std::size_t triangle) {
-    Weights mean{0, 0, 0};
-    for (const Weights& w : film.weights[triangle])
-        for (std::size_t k = 0; k < 3; ++k) mean[k] += w[k] / 3;
-    return mean;
-}
-
 Vec3 point_at(const mesh::TriangleMesh& model, std::uint32_t triangle, const Weights& weights) {
     Vec3 p(0);
     for (int k = 0; k < 3; ++k) p += weights[static_cast<std::size_t>(k)] * model.position(triangle, k);

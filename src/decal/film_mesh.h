@@ -45,9 +45,6 @@ FilmMesh select_film(const mesh::TriangleMesh& model, const CoverageFn& coverage
 /// where the plane misses them.
 std::vector<std::uint32_t> cut(FilmMesh& film, std::uint32_t label, const Plane& plane);
 
-/// Returns the mean of the three corners' weights.
-Weights centre_weights(const FilmMesh& film, std::size_t triangle);
-
 /// Returns the point of the model with these weights, metres.
 Vec3 point_at(const mesh::TriangleMesh& model, std::uint32_t triangle, const Weights& weights);
 

@@ -47,8 +47,6 @@ class Texture {
     void refresh_all(const stroke::Document& painting);
     /// Updates slots. Returns the changed tiles.
     std::vector<render::TilePixels> refresh(std::span<const std::uint32_t> slots, const stroke::Document& painting);
-    /// Side of `pixels()` in texels: the atlas's, rounded up to whole tiles.
-    std::uint32_t padded_size() const { return padded_; }
 
   private:
     void find_filled(const atlas::TexelMap& map, const atlas::Gutter& gutter);

@@ -34,7 +34,6 @@
 namespace tuft::brush::rod {
 
 inline constexpr int kFibres = 16;
-inline constexpr int kMaxSegments = 128;
 
 /// A rod of n segments, in units of L and B0.
 struct Rod {

@@ -13,10 +13,12 @@
 /// that speaks it for the simulated arm.
 namespace tuft::haptic {
 
+inline constexpr int kHaplyPort = 10001;  ///< of the service
+
 /// Address of the service.
 struct HaplyAddress {
     std::string host = "127.0.0.1";
-    int port = 10001;
+    int port = kHaplyPort;
 };
 
 /// Client. A thread of its own connects, reads, parses and answers each state with the newest force; while there is no
@@ -49,7 +51,7 @@ enum class ServerFault { none, dies, not_a_number, jumps, silent, floods };
 
 /// Options of the simulated service.
 struct ServerOptions {
-    int port = 10001;                       ///< 0: any free one
+    int port = kHaplyPort;                  ///< 0: any free one
     double rate = 1000;                     ///< states per second
     ServerFault fault = ServerFault::none;  ///< begins `fault_after` seconds after a client has come
     double fault_after = 1;                 ///< s

@@ -16,7 +16,6 @@
 ///     {"inverse3":[{"device_id":"A14","commands":{"set_cursor_force":{"values":{"x":0,"y":0,"z":0}}}}]}
 namespace tuft::haptic {
 
-inline constexpr int kHaplyPort = 10001;
 inline constexpr std::size_t kLongestMessage = 65536;  ///< bytes; a state of one arm has less than 2,000
 
 /// A state as it was read. The grip is left as it was where a message has none.

@@ -174,10 +174,6 @@ Pigment parse_pigment(std::string_view text, const std::string& source) {
     return read_pigment(in);
 }
 
-std::string pigment_toml(const Pigment& pigment) {
-    return "name = " + quoted(pigment.name) + "\n" + pigment_text(pigment);
-}
-
 Ink load_ink(std::string_view name) {
     const preset::Text text = preset::load(name, "inks", "ink");
     Ink ink = parse_ink(text.text, text.source);

@@ -127,7 +127,6 @@ std::vector<std::string> list_substrates();
 Ink parse_ink(std::string_view toml, const std::string& source);
 std::string ink_toml(const Ink& ink);
 Pigment parse_pigment(std::string_view toml, const std::string& source);
-std::string pigment_toml(const Pigment& pigment);
 Substrate parse_substrate(std::string_view toml, const std::string& source);
 std::string substrate_toml(const Substrate& substrate);
 

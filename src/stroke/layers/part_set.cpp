@@ -66,11 +66,6 @@ const Part* PartSet::part_of(std::uint32_t triangle) const {
     return table_.find(mesh.group_names[mesh.triangle_groups[triangle]]);
 }
 
-bool PartSet::is_hidden(std::uint32_t triangle) const {
-    const Part* part = part_of(triangle);
-    return part && part->hidden;
-}
-
 const ink::Substrate* PartSet::substrate_at(std::uint32_t triangle) const {
     const Part* part = part_of(triangle);
     return part && part->substrate ? &*part->substrate : nullptr;

@@ -37,8 +37,6 @@ class PartSet {
     /// Returns the surface of the visible parts, for contact and picking. Without hidden parts it is the model's. The
     /// model must outlive it. Cost of the first call after a part was hidden or shown: 0.25 s per million triangles.
     std::shared_ptr<const mesh::SurfaceQuery> surface() const;
-    /// Whether a triangle belongs to a hidden part.
-    bool is_hidden(std::uint32_t triangle) const;
     /// Returns [n_triangles] 1 for triangles of hidden parts; empty: none is hidden.
     std::vector<std::uint8_t> hidden_triangles() const;
 

@@ -39,14 +39,6 @@ Vec3 normal_part(const Vec3& v, const Vec3& t) {
 
 }  // namespace
 
-std::vector<Vec3> straight_nodes(std::span<const double> segment_length, const Pose& pose) {
-    std::vector<Vec3> nodes{pose.position};
-    const Vec3 axis = pose.axis();
-    for (const double l : segment_length) nodes.push_back(nodes.back() + l * axis);
-    std::reverse(nodes.begin(), nodes.end());
-    return nodes;
-}
-
 const ContactPlane& plane_of(std::span<const ContactPlane> planes, std::size_t k) {
     return planes.size() == 1 ? planes[0] : planes[k];
 }

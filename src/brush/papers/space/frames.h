@@ -7,11 +7,8 @@
 #include "core/system/recycled.h"
 
 /// \file
-/// What all models of the papers share: nodes of a straight tuft, sections round given nodes, planes of the nodes.
+/// What all models of the papers share: sections round given nodes, planes of the nodes.
 namespace tuft::brush {
-
-/// Returns the nodes of the straight tuft at `pose`, metres, world, tip first. [segments + 1]
-std::vector<Vec3> straight_nodes(std::span<const double> segment_length, const Pose& pose);
 
 /// Returns the plane of node `k` (tip first), whether there is one for each node or one for all. Precondition: not
 /// empty.
