@@ -134,7 +134,7 @@ TEST_F(Cad, ABoxIsClosedAndHasItsAreaAndPlace) {
     const mesh::Surface surface = surface_of(path);
     EXPECT_TRUE(surface.report.closed);
     EXPECT_EQ(surface.mesh.n_triangles(), 12u);
-    EXPECT_EQ(surface.report.degenerate_faces_dropped + surface.report.non_manifold_edges_split, 0u);
+    EXPECT_EQ(surface.report.degenerate_faces_dropped + surface.report.non_manifold.edges_split, 0u);
     EXPECT_NEAR(area_mm2(surface.mesh), 2200, 2200 * 1e-6);  // float positions
     EXPECT_NEAR(surface.mesh.bounds.lo.x, 0.1, 1e-7);
     EXPECT_NEAR(surface.mesh.bounds.hi.z, 0.015, 1e-8);
@@ -403,7 +403,7 @@ TEST_P(ForeignPart, IsWatertightAndHasTheAreaThatOpenCascadeGives) {
     const mesh::Surface surface = surface_of(path);
     EXPECT_EQ(surface.report.closed, GetParam().closed) << surface.report.holes << " holes";
     EXPECT_NEAR(area_mm2(surface.mesh) / area, 1, GetParam().tolerance);
-    EXPECT_EQ(surface.report.non_manifold_edges_split, GetParam().touching);
+    EXPECT_EQ(surface.report.non_manifold.edges_split, GetParam().touching);
 }
 
 // STEP as shipped: a screw and linked rods of Open CASCADE, the assembly AS1 of the CAx Implementor Forum written by

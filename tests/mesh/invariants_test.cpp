@@ -124,8 +124,8 @@ TEST(BadMeshes, AHundredBecomeSound) {
         if (seed % 3 == 0) set_uvs_to_position(soup);
         const Surface s = build_surface(soup, {.metres_per_unit = 1});
         ASSERT_THAT(broken_promises(s), ElementsAre());
-        split_edges += s.report.non_manifold_edges_split;
-        split_vertices += s.report.non_manifold_vertices_split;
+        split_edges += s.report.non_manifold.edges_split;
+        split_vertices += s.report.non_manifold.vertices_split;
         flipped += s.report.faces_flipped;
         mended += s.report.degenerate_faces_repaired;
         // Coordinates reach 40, and a mended corner is interpolated: a few roundings of float.

@@ -306,7 +306,7 @@ TEST(Stl, SolidsOfATextFileAreGroups) {
     EXPECT_THAT(soup.group_names, ElementsAre("left", "solid 2"));
     const Surface s = build_surface(soup);
     EXPECT_EQ(s.report.components, 2u);
-    EXPECT_TRUE(s.report.loose_triangles);
+    EXPECT_TRUE(s.report.file.loose_triangles);
     EXPECT_THAT(texts(describe_defects(s.report)), ElementsAre());
 }
 

@@ -66,7 +66,7 @@ TEST(Repair, WeldsVerticesAtTheSamePlace) {
     EXPECT_EQ(s.mesh.n_vertices(), 8u);
     EXPECT_EQ(s.report.duplicate_faces_dropped, 1u);
     EXPECT_TRUE(s.report.closed);
-    EXPECT_FALSE(s.report.loose_triangles);
+    EXPECT_FALSE(s.report.file.loose_triangles);
 }
 
 TEST(Repair, NegativeZeroIsZero) {
@@ -106,7 +106,7 @@ TEST(Repair, DropsFacesWithoutArea) {
     add_polygon(sheet, {0, 1, 2});     // collinear
     const Surface s = repaired(sheet);
     EXPECT_EQ(s.report.degenerate_faces_dropped, 3u);
-    EXPECT_EQ(s.report.non_manifold_edges_split, 0u);
+    EXPECT_EQ(s.report.non_manifold.edges_split, 0u);
     EXPECT_EQ(s.mesh.n_triangles(), 8u);
 }
 
@@ -165,7 +165,7 @@ TEST(Repair, DropsDuplicateFacesWhicheverWayRound) {
     const Surface s = repaired(sheet);
     EXPECT_EQ(s.report.duplicate_faces_dropped, 2u);
     EXPECT_EQ(s.mesh.n_triangles(), 8u);
-    EXPECT_EQ(s.report.non_manifold_edges_split, 0u);
+    EXPECT_EQ(s.report.non_manifold.edges_split, 0u);
     EXPECT_EQ(s.report.faces_flipped, 0u);
 }
 
@@ -185,8 +185,8 @@ TEST(Repair, FinComesOffTheSheetItStandsOn) {
     sheet.points.emplace_back(2, 1.5, 1);
     add_polygon(sheet, {7, 12, 25});  // on the inner edge from (2, 1) to (2, 2)
     const Surface s = repaired(sheet);
-    EXPECT_EQ(s.report.non_manifold_edges_split, 1u);
-    EXPECT_EQ(s.report.non_manifold_vertices_split, 0u);
+    EXPECT_EQ(s.report.non_manifold.edges_split, 1u);
+    EXPECT_EQ(s.report.non_manifold.vertices_split, 0u);
     EXPECT_EQ(s.report.components, 2u);
     EXPECT_EQ(s.report.border_edges, 16u + 3u);
     EXPECT_EQ(s.mesh.n_vertices(), 25u + 3u);
@@ -196,7 +196,7 @@ TEST(Repair, CubesThatTouchInAnEdgeComeApart) {
     PolygonSoup cubes = make_box();
     add_box(cubes, Vec3(1, 1, 0), Vec3(1));
     const Surface s = repaired(cubes);
-    EXPECT_EQ(s.report.non_manifold_edges_split, 1u);
+    EXPECT_EQ(s.report.non_manifold.edges_split, 1u);
     EXPECT_EQ(s.report.components, 2u);
     EXPECT_TRUE(s.report.closed);
     EXPECT_EQ(s.mesh.n_vertices(), 16u);
@@ -207,8 +207,8 @@ TEST(Repair, ConesThatTouchInAPointComeApart) {
     PolygonSoup cubes = make_box();
     add_box(cubes, Vec3(1, 1, 1), Vec3(1));
     const Surface s = repaired(cubes);
-    EXPECT_EQ(s.report.non_manifold_edges_split, 0u);
-    EXPECT_EQ(s.report.non_manifold_vertices_split, 1u);
+    EXPECT_EQ(s.report.non_manifold.edges_split, 0u);
+    EXPECT_EQ(s.report.non_manifold.vertices_split, 1u);
     EXPECT_EQ(s.report.components, 2u);
     EXPECT_EQ(s.mesh.n_vertices(), 16u);
 }
@@ -414,7 +414,7 @@ TEST(Repair, MoebiusStripIsCutOpen) {
     EXPECT_THAT(texts(s.report.warnings), ElementsAre(HasSubstr("one side")));
     EXPECT_EQ(s.mesh.n_triangles(), 4u * kSteps);
     EXPECT_EQ(s.report.components, 1u);
-    EXPECT_EQ(s.report.non_manifold_vertices_split, 0u);
+    EXPECT_EQ(s.report.non_manifold.vertices_split, 0u);
 }
 
 TEST(Repair, CountsPartsHolesAndBorders) {
@@ -435,9 +435,9 @@ TEST(Repair, CountsPartsHolesAndBorders) {
     EXPECT_EQ(s.report.border_edges, 24u);
     EXPECT_FALSE(s.report.closed);
     EXPECT_EQ(s.report.unused_vertices_dropped, 1u);
-    EXPECT_EQ(s.report.polygons_triangulated, 6u);
-    EXPECT_EQ(s.report.points_in_file, 36u + 8u + 1u);
-    EXPECT_EQ(s.report.polygons_in_file, 48u + 6u);
+    EXPECT_EQ(s.report.file.polygons_triangulated, 6u);
+    EXPECT_EQ(s.report.file.points, 36u + 8u + 1u);
+    EXPECT_EQ(s.report.file.polygons, 48u + 6u);
 }
 
 TEST(Repair, KeepsColoursGroupsAndTextureCoordinatesThroughEverything) {

@@ -436,15 +436,15 @@ nlohmann::json to_json(const stroke::Layer& layer) {
 }
 
 nlohmann::json to_json(const mesh::RepairReport& r) {
-    return {{"points_in_file", r.points_in_file},
-            {"polygons_in_file", r.polygons_in_file},
-            {"polygons_triangulated", r.polygons_triangulated},
+    return {{"points_in_file", r.file.points},
+            {"polygons_in_file", r.file.polygons},
+            {"polygons_triangulated", r.file.polygons_triangulated},
             {"vertices_welded", r.vertices_welded},
             {"unused_vertices_dropped", r.unused_vertices_dropped},
             {"degenerate_faces_dropped", r.degenerate_faces_dropped},
             {"duplicate_faces_dropped", r.duplicate_faces_dropped},
-            {"non_manifold_edges_split", r.non_manifold_edges_split},
-            {"non_manifold_vertices_split", r.non_manifold_vertices_split},
+            {"non_manifold_edges_split", r.non_manifold.edges_split},
+            {"non_manifold_vertices_split", r.non_manifold.vertices_split},
             {"faces_flipped", r.faces_flipped},
             {"components", r.components},
             {"holes", r.holes},

@@ -131,7 +131,7 @@ std::vector<Message> describe_defects(const RepairReport& r) {
         if (n) lines.push_back(Message(n == 1 ? one : many, n));
     };
     // Triangles without shared vertices are the way of STL, not a defect.
-    if (!r.loose_triangles)
+    if (!r.file.loose_triangles)
         note(r.vertices_welded, "{} vertex lay on another one: welded", "{} vertices lay on others: welded");
     note(r.crack_vertices_welded, "{} vertex lay next to another one across a crack: welded",
          "{} vertices lay next to others across cracks: welded");
@@ -141,9 +141,9 @@ std::vector<Message> describe_defects(const RepairReport& r) {
     note(r.degenerate_faces_repaired, "{} face with a corner on its opposite side: mended by a flip",
          "{} faces with a corner on their opposite side: mended by flips");
     note(r.duplicate_faces_dropped, "{} face is there twice: dropped", "{} faces are there twice: dropped");
-    note(r.non_manifold_edges_split, "{} edge with more than two faces: split",
+    note(r.non_manifold.edges_split, "{} edge with more than two faces: split",
          "{} edges with more than two faces: split");
-    note(r.non_manifold_vertices_split, "{} vertex where separate surfaces touch: split",
+    note(r.non_manifold.vertices_split, "{} vertex where separate surfaces touch: split",
          "{} vertices where separate surfaces touch: split");
     note(r.faces_flipped, "{} face showed its back: turned round", "{} faces showed their backs: turned round");
     note(r.parts_turned, "{} open part was inside out: turned round", "{} open parts were inside out: turned round");
@@ -156,8 +156,8 @@ std::vector<std::string> describe(const MeshSummary& s) {
     std::vector<std::string> lines;
     lines.push_back(count_text(s.n_triangles, "triangle, ", "triangles, ") +
                     count_text(s.n_vertices, "vertex", "vertices") + " (in the file " +
-                    count_text(r.polygons_in_file, "face, ", "faces, ") +
-                    count_text(r.points_in_file, "vertex)", "vertices)"));
+                    count_text(r.file.polygons, "face, ", "faces, ") +
+                    count_text(r.file.points, "vertex)", "vertices)"));
     lines.push_back("size " + size_text(s.bounds.size()) + ", area " + short_number(s.area * 1e4) + " cm²" +
                     (r.closed ? ", volume " + short_number(s.volume * 1e6) + " cm³" : ""));
     lines.push_back("edges: half of them below " + short_number(s.median_edge / kMillimetre) + " mm, longest " +
@@ -172,7 +172,7 @@ std::vector<std::string> describe(const MeshSummary& s) {
     if (s.has_colours && !s.vertex_colours && s.pictures.empty()) extras += "colours of materials, ";
     for (const std::string& picture : s.pictures) extras += "the picture " + picture + ", ";
     if (!s.group_names.empty()) extras += count_text(s.group_names.size(), "group, ", "groups, ");
-    if (r.loose_triangles) lines.push_back("the triangles came loose and were joined (as in STL)");
+    if (r.file.loose_triangles) lines.push_back("the triangles came loose and were joined (as in STL)");
     if (!extras.empty()) lines.push_back("has " + extras.substr(0, extras.size() - 2));
     lines.push_back("unit: " + s.unit.sentence);
     if (std::abs(s.unit.metres_per_unit / s.metres_per_unit - 1) > 1e-9)

@@ -76,10 +76,10 @@ class Repair {
 
 /// Scales to metres in float, the precision everything after works with.
 void Repair::take_points() {
-    report_.points_in_file = soup_.points.size();
-    report_.polygons_in_file = soup_.n_polygons();
+    report_.file.points = soup_.points.size();
+    report_.file.polygons = soup_.n_polygons();
     report_.warnings = std::move(soup_.warnings);
-    report_.loose_triangles = soup_.points.size() == soup_.corners.size() && soup_.n_polygons() > 1;
+    report_.file.loose_triangles = soup_.points.size() == soup_.corners.size() && soup_.n_polygons() > 1;
     Box bounds;
     double largest = 0;
     mesh_.positions.reserve(soup_.points.size());
@@ -185,7 +185,7 @@ void Repair::cut_polygon(std::size_t p, EarBudget& budget) {
         ++report_.degenerate_faces_dropped;
         return;
     }
-    ++report_.polygons_triangulated;
+    ++report_.file.polygons_triangulated;
     ring_points_.clear();
     for (const std::uint32_t c : ring_) ring_points_.push_back(Vec3(mesh_.positions[soup_.corners[c]]));
     cuts_.clear();
@@ -270,7 +270,7 @@ void Repair::make_manifold() {
     if (sides.edges_cut)
         report_.warnings.push_back(
             Message("a part has only one side (like a Möbius strip); it was cut open along {} edges", sides.edges_cut));
-    report_.non_manifold_vertices_split += split_vertices(mesh_);
+    report_.non_manifold.vertices_split += split_vertices(mesh_);
     if (pairs_.needs_settling || sides.edges_cut) settle(mesh_);
 }
 
@@ -356,8 +356,8 @@ Surface Repair::run() {
     cut_polygons();
     tuft::report(options_.progress, "matching edges", 0);
     match();
-    if (report_.loose_triangles && close_cracks()) match();
-    report_.non_manifold_edges_split = pairs_.edges_split;
+    if (report_.file.loose_triangles && close_cracks()) match();
+    report_.non_manifold.edges_split = pairs_.edges_split;
     for (;;) {
         make_manifold();
         compact();

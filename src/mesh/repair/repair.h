@@ -34,21 +34,31 @@ struct RepairOptions {
     ProgressFn progress = nullptr;
 };
 
-/// Defects that were found and repaired. Counts are of the file's elements.
-struct RepairReport {
-    std::size_t points_in_file = 0;
-    std::size_t polygons_in_file = 0;
+/// What a file holds.
+struct FileCounts {
+    std::size_t points = 0;
+    std::size_t polygons = 0;
     std::size_t polygons_triangulated = 0;  ///< with more than three corners
     bool loose_triangles = false;           ///< every corner has its own point, as in STL
-    std::size_t vertices_welded = 0;        ///< removed because they coincide with another
+};
+
+/// Places where the surface was no manifold, and was split.
+struct NonManifoldCounts {
+    std::size_t edges_split = 0;
+    std::size_t vertices_split = 0;
+};
+
+/// Defects that were found and repaired. Counts are of the file's elements.
+struct RepairReport {
+    FileCounts file;
+    std::size_t vertices_welded = 0;  ///< removed because they coincide with another
     /// Removed because they lie within 1e-6 of the size: border vertices of loose triangles.
     std::size_t crack_vertices_welded = 0;
     std::size_t unused_vertices_dropped = 0;
     std::size_t degenerate_faces_dropped = 0;   ///< repeated corner or zero area
     std::size_t degenerate_faces_repaired = 0;  ///< a corner on the opposite side: that side flipped
     std::size_t duplicate_faces_dropped = 0;
-    std::size_t non_manifold_edges_split = 0;
-    std::size_t non_manifold_vertices_split = 0;
+    NonManifoldCounts non_manifold;
     std::size_t faces_flipped = 0;  ///< to orient a component consistently, and a closed one outward
     std::size_t parts_turned = 0;   ///< open components that were inside out (`OpenSides::outward`)
     std::size_t components = 0;
