@@ -61,7 +61,7 @@ class BrushLines {
   private:
     void add_shape(const SvgShape& s) {
         const bool wide = s.style.visible && s.style.stroked() && !options_.outlines &&
-                          s.style.width * svg_growth(s.matrix) >= options_.wide;
+                          s.style.pen.width * svg_growth(s.matrix) >= options_.wide;
         const std::size_t before = lines_.size();
         const std::size_t whole = add_lines(s);
         if (whole == 0 && !s.style.stroked()) return;
@@ -70,7 +70,7 @@ class BrushLines {
             lines_.resize(before);
         else if (s.style.filled() && whole > 0)
             fill(before, s.style);
-        if (s.style.stroked() && (wide || options_.outlines || whole == 0 || !s.style.dashes.empty())) {
+        if (s.style.stroked() && (wide || options_.outlines || whole == 0 || !s.style.pen.dashes.empty())) {
             lines_.resize(lines_.size() - whole);
             if (!wide || !add_wide(s)) add_strokes(s);
         }
@@ -79,7 +79,7 @@ class BrushLines {
 
     // The lines of the shape, without dashes; how many.
     std::size_t add_lines(const SvgShape& s) {
-        width_ = s.style.stroked() ? std::min(s.style.width * svg_growth(s.matrix), options_.ink.max_extent) : 0;
+        width_ = s.style.stroked() ? std::min(s.style.pen.width * svg_growth(s.matrix), options_.ink.max_extent) : 0;
         if (!std::isfinite(width_)) width_ = 0;
         const std::size_t before = lines_.size();
         for (const SvgLine& line : s.lines) emit(line, s);
@@ -108,11 +108,11 @@ class BrushLines {
     void add_strokes(const SvgShape& s) {
         const double tolerance = area_tolerance(scene_, options_.tolerance);
         SvgShape one{.matrix = s.matrix, .style = s.style};
-        one.style.dashes.clear();
+        one.style.pen.dashes.clear();
         for (const SvgLine& line : s.lines)
-            for (SvgLine& dash : s.style.dashes.empty() || line.size() < 2
+            for (SvgLine& dash : s.style.pen.dashes.empty() || line.size() < 2
                                      ? std::vector<SvgLine>{line}
-                                     : svg_dashed(line, s.style.dashes, s.style.dash_offset)) {
+                                     : svg_dashed(line, s.style.pen.dashes, s.style.pen.dash_offset)) {
                 const std::size_t before = lines_.size();
                 if (emit(dash, s); lines_.size() == before) emit(dot_of(dash, s.style), s);
                 if (lines_.size() == before || !options_.outlines) continue;
@@ -125,8 +125,8 @@ class BrushLines {
 
     // A point shows its ends, a brush needs a line.
     static SvgLine dot_of(const SvgLine& line, const SvgStyle& style) {
-        if (line.empty() || style.cap == SvgCap::butt) return {};
-        const Vec2 half(kDot * style.width, 0);
+        if (line.empty() || style.pen.cap == SvgCap::butt) return {};
+        const Vec2 half(kDot * style.pen.width, 0);
         return {line.front() - half, line.front() + half};
     }
 

@@ -366,9 +366,9 @@ SvgShape svg_with_own_width(SvgShape s, double unit) {
     if (!s.fixed_width) return s;
     s.lines = moved(std::move(s.lines), s.matrix);
     s.matrix = SvgMatrix(1);
-    s.style.width *= unit;
-    s.style.dash_offset *= unit;
-    for (double& d : s.style.dashes) d *= unit;
+    s.style.pen.width *= unit;
+    s.style.pen.dash_offset *= unit;
+    for (double& d : s.style.pen.dashes) d *= unit;
     s.fixed_width = false;
     return s;
 }

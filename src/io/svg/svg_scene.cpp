@@ -539,7 +539,7 @@ class SceneReader {
         inside.matrix = inside.matrix *
                         SvgMatrix(std::cos(angle), std::sin(angle), 0, -std::sin(angle), std::cos(angle), 0, 0, 0, 1);
         if (std::string_view(node.attribute("markerUnits").value()) != "userSpaceOnUse")
-            inside.matrix = inside.matrix * svg_scaling(state.style.width, state.style.width);
+            inside.matrix = inside.matrix * svg_scaling(state.style.pen.width, state.style.pen.width);
         const auto side = [&](const char* name, double otherwise) {
             return node.attribute(name) ? number(node, name, state) : otherwise;
         };

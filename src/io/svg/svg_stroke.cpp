@@ -17,7 +17,7 @@ double cross_of(const Vec2& a, const Vec2& b) {
 /// Outline of one line, side by side.
 class Outline {
   public:
-    Outline(const SvgStyle& style, double tolerance) : style_(style), r_(0.5 * style.width) {
+    Outline(const SvgStyle& style, double tolerance) : style_(style), r_(0.5 * style.pen.width) {
         const double part = std::clamp(tolerance / std::max(r_, 1e-300), 1e-4, 0.5);
         step_ = 2 * std::acos(1 - part);
     }
@@ -45,8 +45,8 @@ class Outline {
   private:
     // A line of length 0 shows its ends.
     std::vector<SvgLine> dot(const Vec2& at) {
-        if (style_.cap == SvgCap::butt) return {};
-        if (style_.cap == SvgCap::square)
+        if (style_.pen.cap == SvgCap::butt) return {};
+        if (style_.pen.cap == SvgCap::square)
             return {{at + Vec2(-r_, -r_), at + Vec2(r_, -r_), at + Vec2(r_, r_), at + Vec2(-r_, r_)}};
         SvgLine ring;
         fan(ring, at, {r_, 0}, 2 * std::numbers::pi);
@@ -76,18 +76,18 @@ class Outline {
             if (turn > 1e-3) out.push_back(at);
             return;
         }
-        if (style_.join == SvgJoin::round) return fan(out, at, r_ * left_of(in), turn);
+        if (style_.pen.join == SvgJoin::round) return fan(out, at, r_ * left_of(in), turn);
         // The ratio of the miter's length to the width is 1 / sin(θ/2), θ the angle between the parts.
         const double sine = std::cos(0.5 * turn);
-        if (style_.join == SvgJoin::miter && sine * style_.miter_limit >= 1 && sine > 1e-6) {
+        if (style_.pen.join == SvgJoin::miter && sine * style_.pen.miter_limit >= 1 && sine > 1e-6) {
             const Vec2 middle = left_of(in) + left_of(on);
             out.push_back(at + (r_ / sine) * glm::normalize(middle));
         }
     }
 
     void cap(SvgLine& out, const Vec2& at, const Vec2& along) {
-        if (style_.cap == SvgCap::round) return fan(out, at, r_ * left_of(along), -std::numbers::pi);
-        if (style_.cap != SvgCap::square) return;
+        if (style_.pen.cap == SvgCap::round) return fan(out, at, r_ * left_of(along), -std::numbers::pi);
+        if (style_.pen.cap != SvgCap::square) return;
         out.push_back(at + r_ * (along + left_of(along)));
         out.push_back(at + r_ * (along - left_of(along)));
     }
@@ -145,10 +145,10 @@ std::vector<SvgLine> svg_dashed(const SvgLine& line, const std::vector<double>& 
 }
 
 std::vector<SvgLine> svg_stroke_rings(const SvgLine& line, const SvgStyle& style, double tolerance) {
-    if (line.empty() || !(style.width > 0)) return {};
+    if (line.empty() || !(style.pen.width > 0)) return {};
     std::vector<SvgLine> rings;
-    for (const SvgLine& part :
-         style.dashes.empty() ? std::vector<SvgLine>{line} : svg_dashed(line, style.dashes, style.dash_offset))
+    for (const SvgLine& part : style.pen.dashes.empty() ? std::vector<SvgLine>{line}
+                                                        : svg_dashed(line, style.pen.dashes, style.pen.dash_offset))
         for (SvgLine& ring : Outline(style, tolerance).of(part)) rings.push_back(std::move(ring));
     return rings;
 }

@@ -69,7 +69,7 @@ void inherit_style(SvgStyle& style, const SvgProperty& own, const SvgIds& ids, c
     if (const std::string paint = own("stroke"); !paint.empty()) style.stroke = svg_paint(paint, ids, style.current);
     if (const std::string paint = own("fill"); !paint.empty()) style.fill = svg_paint(paint, ids, style.current);
     if (const std::string width = own("stroke-width"); !width.empty() && width.back() != '%')
-        style.width = std::max(0.0, svg_length(width, source) / kSvgPixel);
+        style.pen.width = std::max(0.0, svg_length(width, source) / kSvgPixel);
     const auto rule_of = [&](const char* name, FillRule& to) {
         if (const std::string rule = own(name); !rule.empty())
             to = rule == "evenodd" ? FillRule::even_odd : FillRule::nonzero;
@@ -78,14 +78,15 @@ void inherit_style(SvgStyle& style, const SvgProperty& own, const SvgIds& ids, c
     rule_of("clip-rule", style.clip_rule);
     if (const std::string seen = own("visibility"); !seen.empty()) style.visible = seen == "visible";
     if (const std::string cap = own("stroke-linecap"); !cap.empty())
-        style.cap = cap == "round" ? SvgCap::round : cap == "square" ? SvgCap::square : SvgCap::butt;
+        style.pen.cap = cap == "round" ? SvgCap::round : cap == "square" ? SvgCap::square : SvgCap::butt;
     if (const std::string join = own("stroke-linejoin"); !join.empty())
-        style.join = join == "round" ? SvgJoin::round : join == "bevel" ? SvgJoin::bevel : SvgJoin::miter;
+        style.pen.join = join == "round" ? SvgJoin::round : join == "bevel" ? SvgJoin::bevel : SvgJoin::miter;
     if (const std::string limit = own("stroke-miterlimit"); !limit.empty())
-        style.miter_limit = std::max(1.0, SvgReader(limit, source).number());
-    if (const std::string dashes = own("stroke-dasharray"); !dashes.empty()) style.dashes = svg_dashes(dashes, source);
+        style.pen.miter_limit = std::max(1.0, SvgReader(limit, source).number());
+    if (const std::string dashes = own("stroke-dasharray"); !dashes.empty())
+        style.pen.dashes = svg_dashes(dashes, source);
     if (const std::string offset = own("stroke-dashoffset"); !offset.empty() && offset.back() != '%')
-        style.dash_offset = svg_length(offset, source) / kSvgPixel;
+        style.pen.dash_offset = svg_length(offset, source) / kSvgPixel;
     if (const std::string all = own("marker"); !all.empty())
         style.marker_start = style.marker_mid = style.marker_end = svg_reference(all);
     for (const auto& [name, to] :

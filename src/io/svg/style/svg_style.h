@@ -35,17 +35,22 @@ struct SvgPaint {
 enum class SvgCap { butt, round, square };
 enum class SvgJoin { miter, round, bevel };
 
+/// How lines are drawn, user units.
+struct SvgPen {
+    double width = 1;
+    SvgCap cap = SvgCap::butt;
+    SvgJoin join = SvgJoin::miter;
+    double miter_limit = 4;      ///< at least 1: length of a miter over the width, beyond which it is cut off
+    std::vector<double> dashes;  ///< an even number; empty: a solid line
+    double dash_offset = 0;
+};
+
 /// Properties that elements inherit from their parents.
 struct SvgStyle {
     SvgPaint stroke, fill{SvgPaint::Kind::flat, "black", {}, {}};
     SvgColour current;  ///< `color`
     FillRule rule = FillRule::nonzero, clip_rule = FillRule::nonzero;
-    double width = 1;  ///< of lines, user units
-    SvgCap cap = SvgCap::butt;
-    SvgJoin join = SvgJoin::miter;
-    double miter_limit = 4;
-    std::vector<double> dashes;  ///< user units, an even number; empty: a solid line
-    double dash_offset = 0;
+    SvgPen pen;
     std::string marker_start, marker_mid, marker_end;  ///< ids; empty: none
     double fill_opacity = 1, stroke_opacity = 1;
     bool visible = true;
