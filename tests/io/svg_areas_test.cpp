@@ -296,9 +296,9 @@ TEST(SvgAreas, LayersAndNamedGroupsAreGroups) {
             "<g id='no' class='big readable'><rect x='10' width='10' height='10' fill='red'/><rect x='30' "
             "width='10' height='10' fill='red'/></g><rect width='9' height='9' fill='red'/>")
             .areas;
-    EXPECT_EQ(marked[0].upright, "no");
-    EXPECT_NEAR(marked[1].upright_centre.x, 0.025, 1e-9);
-    EXPECT_EQ(marked[2].upright, "");
+    EXPECT_EQ(marked[0].reading.part, "no");
+    EXPECT_NEAR(marked[1].reading.centre.x, 0.025, 1e-9);
+    EXPECT_EQ(marked[2].reading.part, "");
 }
 
 TEST(SvgAreas, WhiteOverThePageIsTheGround) {

@@ -174,8 +174,8 @@ TEST(SvgText, ElementsKeepTheirColoursAndFonts) {
     ASSERT_EQ(r.areas.size(), 2u);
     EXPECT_EQ(r.areas[0].stops.at(0).ink, "#800000");
     EXPECT_EQ(r.areas[1].stops.at(0).ink, "#000080");
-    EXPECT_FALSE(r.areas[0].upright.empty());  // a mirrored copy keeps text readable
-    EXPECT_EQ(r.areas[0].upright, r.areas[1].upright);
+    EXPECT_FALSE(r.areas[0].reading.part.empty());  // a mirrored copy keeps text readable
+    EXPECT_EQ(r.areas[0].reading.part, r.areas[1].reading.part);
     EXPECT_NE(extent("<text x='10' y='50' font-weight='bold'>mmm</text>").width(),
               extent("<text x='10' y='50'>mmm</text>").width());
 }

@@ -209,8 +209,8 @@ TEST(Area, IsTheSameForAnyNumberOfThreadsAndFromItsText) {
     a.to_unit = {70, 3, -5, 90, 0.1, 0.2};
     a.focus = {0.2, -0.1};
     a.placed = true;
-    a.upright = "number";
-    a.upright_centre = {0.001, 0.002};
+    a.reading.part = "number";
+    a.reading.centre = {0.001, 0.002};
     a.lines = {{{-0.01, 0}, {0.003, 0.0001}, {0.0097, 0}}, {{0, 0.001}}};
     JournalEntry entry{fill_of_area(a)};
     std::uint64_t hashes[3];
@@ -281,8 +281,8 @@ TEST(Copies, KeepMarkedPartsReadableWhereTheMirrorPutsThem) {
     const Ring letter{{0.004, -0.01}, {0.007, -0.01}, {0.007, 0.007}, {0.014, 0.007}, {0.014, 0.01}, {0.004, 0.01}};
     FlatArea a = area({letter});
     a.placed = true;
-    a.upright = "number";
-    a.upright_centre = {0.009, 0};
+    a.reading.part = "number";
+    a.reading.centre = {0.009, 0};
     const JournalEntry copy = symmetric_copies(std::vector<JournalEntry>{JournalEntry(fill_of_area(a))},
                                                {.mirror_x = true}, CopyReading::upright_parts, {})[0];
     const FlatArea& b = *copy.get<Fill>().area;

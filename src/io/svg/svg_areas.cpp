@@ -267,7 +267,7 @@ class AreaMaker {
                               .even_odd = even_odd,
                               .lines = std::move(lines),
                               .placement = {},
-                              .upright = part.shape->upright,
+                              .reading = {.part = part.shape->upright, .centre = Vec2{0}},
                               .stops = {}};
         const double opacity = part.opacity * value;
         SvgGradientPtr gradient = part.gradient;
@@ -338,7 +338,7 @@ class AreaMaker {
         };
         for (stroke::RecordedStroke& recorded : out_) {
             stroke::FlatArea& area = area_of(recorded);
-            auto& part = upright.try_emplace(area.upright, Vec2(HUGE_VAL), Vec2(-HUGE_VAL)).first->second;
+            auto& part = upright.try_emplace(area.reading.part, Vec2(HUGE_VAL), Vec2(-HUGE_VAL)).first->second;
             for (const auto& ring : area.rings)
                 for (const Vec2& p : ring) part = {glm::min(part.first, p), glm::max(part.second, p)};
             low = glm::min(low, part.first), high = glm::max(high, part.second);
@@ -346,8 +346,8 @@ class AreaMaker {
         for (stroke::RecordedStroke& recorded : out_) {
             stroke::FlatArea& area = area_of(recorded);
             area.low = low, area.high = high;
-            const auto& [from, to] = upright.at(area.upright);
-            if (!area.upright.empty()) area.upright_centre = 0.5 * (from + to);
+            const auto& [from, to] = upright.at(area.reading.part);
+            if (!area.reading.part.empty()) area.reading.centre = 0.5 * (from + to);
         }
     }
 

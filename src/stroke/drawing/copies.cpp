@@ -36,8 +36,8 @@ void copy_area(FlatArea& area, const PoseMap& map, bool reflects, CopyReading re
     place_copy(area.placement, map, reflects);
     if (!reflects || reading == CopyReading::upright) return;
     transform_area(area, Vec2(0), 1, true);
-    if (reading != CopyReading::upright_parts || area.upright.empty()) return;
-    const Vec2 low = area.low, high = area.high, centre = area.upright_centre;
+    if (reading != CopyReading::upright_parts || area.reading.part.empty()) return;
+    const Vec2 low = area.low, high = area.high, centre = area.reading.centre;
     transform_area(area, Vec2(centre.x, 0), 1, true);
     transform_area(area, Vec2(-centre.x, 0), 1);
     area.low = low, area.high = high;

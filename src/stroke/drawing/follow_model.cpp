@@ -61,7 +61,7 @@ void move_area(FlatArea& area, const ModelMotion& motion) {
     for (auto* paths : {&area.rings, &area.lines})
         for (auto& path : *paths)
             for (Vec2& p : path) p = rest * p;
-    area.low = rest * area.low, area.high = rest * area.high, area.upright_centre = rest * area.upright_centre;
+    area.low = rest * area.low, area.high = rest * area.high, area.reading.centre = rest * area.reading.centre;
     auto& a = area.to_unit;
     const Mat2 unit = Mat2(a[0], a[1], a[2], a[3]) * glm::inverse(rest);
     a[0] = unit[0][0], a[1] = unit[0][1], a[2] = unit[1][0], a[3] = unit[1][1];

@@ -138,7 +138,7 @@ void check_area(const FlatArea& area) {
     if (area.stops.empty() || area.stops.size() > kMaxAreaStops) throw Error("an area has no ink, or too many stops");
     double before = 0;
     for (const AreaStop& stop : area.stops) check_stop(stop, before), before = stop.at;
-    for (const Vec2& p : {area.low, area.high, area.upright_centre})
+    for (const Vec2& p : {area.low, area.high, area.reading.centre})
         if (!within(p)) throw Error("the bounds of an area lie out of range");
     for (const double a : area.to_unit)
         if (!std::isfinite(a)) throw Error("the gradient of an area is not finite");
@@ -172,7 +172,7 @@ void transform_area(FlatArea& area, const Vec2& centre, double scale, bool mirro
             for (Vec2& p : path) move(p);
     move(area.low);
     move(area.high);
-    move(area.upright_centre);
+    move(area.reading.centre);
     const Vec2 low = glm::min(area.low, area.high), high = glm::max(area.low, area.high);
     area.low = low, area.high = high;
     // q = A (x', y') with x = sign x' / scale + centre.x, y = y' / scale + centre.y.
@@ -196,7 +196,8 @@ json json_of(const FlatArea& area) {
     if (area.edges != AreaEdges::facing) j["edges"] = kAreaEdges[static_cast<int>(area.edges)];
     j["low"] = pair_of(area.low);
     j["high"] = pair_of(area.high);
-    if (!area.upright.empty()) j["upright"] = area.upright, j["upright_centre"] = pair_of(area.upright_centre);
+    if (!area.reading.part.empty())
+        j["upright"] = area.reading.part, j["upright_centre"] = pair_of(area.reading.centre);
     json& stops = j["stops"] = json::array();
     for (const AreaStop& s : area.stops)
         stops.push_back({{"at", s.at}, {"ink", s.ink}, {"opacity", s.opacity}, {"film", s.film}});
@@ -240,8 +241,8 @@ FlatArea flat_area_of(const json& j) {
         area.edges = area_word<AreaEdges>(j.value("edges", "facing"), kAreaEdges);
         area.low = pair_in(j.at("low"));
         area.high = pair_in(j.at("high"));
-        area.upright = j.value("upright", "");
-        if (!area.upright.empty()) area.upright_centre = pair_in(j.at("upright_centre"));
+        area.reading.part = j.value("upright", "");
+        if (!area.reading.part.empty()) area.reading.centre = pair_in(j.at("upright_centre"));
         for (const json& s : j.at("stops"))
             area.stops.push_back({s.at("at").get<double>(), s.at("ink").get<std::string>(),
                                   s.at("opacity").get<double>(), s.at("film").get<double>()});

@@ -53,6 +53,14 @@ struct AreaImage {
 };
 inline constexpr int kMaxAreaSide = 1024;  ///< pixels, of a picture
 
+/// Part of a drawing that is read, such as text: all areas of one part stay readable in a mirrored copy.
+struct AreaReading {
+    std::string part;  ///< name; empty: the area is mirrored
+    Vec2 centre{0};    ///< of the part, metres
+
+    bool operator==(const AreaReading&) const = default;
+};
+
 /// A closed flat area with an even or a graded film. Lengths in metres, frame of flat samples (x right, y down).
 struct FlatArea {
     std::vector<std::vector<Vec2>> rings;  ///< closed: the last point is joined to the first
@@ -63,9 +71,8 @@ struct FlatArea {
     Placement placement;
     bool placed = false;  ///< the file gives a placement
     AreaEdges edges = AreaEdges::facing;
-    Vec2 low{0}, high{0};         ///< bounds of the drawing that it is part of
-    std::string upright;          ///< parts of one name are read the same way in a mirrored copy; empty: mirrored
-    Vec2 upright_centre{0};       ///< of such a part
+    Vec2 low{0}, high{0};  ///< bounds of the drawing that it is part of
+    AreaReading reading;
     std::vector<AreaStop> stops;  ///< ascending, at least one
     AreaGradient gradient = AreaGradient::none;
     AreaSpread spread = AreaSpread::pad;
