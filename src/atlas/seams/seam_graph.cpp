@@ -113,28 +113,28 @@ void SeamGraph::number_edges(std::span<const std::uint8_t> seam) {
 
 void SeamGraph::number_charts(std::span<const std::uint8_t> seam) {
     const auto n = static_cast<std::uint32_t>(patch_.triangles.size());
-    first_chart_.resize(n);
-    std::iota(first_chart_.begin(), first_chart_.end(), 0u);
+    charts_.first.resize(n);
+    std::iota(charts_.first.begin(), charts_.first.end(), 0u);
     for (std::uint32_t h = 0; h < seam.size(); ++h) {
         if (seam[h]) continue;
-        const std::uint32_t a = find_root(first_chart_, h / 3);
-        const std::uint32_t b = find_root(first_chart_, patch_.twin[h] / 3);
-        first_chart_[std::max(a, b)] = std::min(a, b);
+        const std::uint32_t a = find_root(charts_.first, h / 3);
+        const std::uint32_t b = find_root(charts_.first, patch_.twin[h] / 3);
+        charts_.first[std::max(a, b)] = std::min(a, b);
     }
     // A root is the first triangle of its chart, so that those before it have their numbers.
     std::uint32_t n_charts = 0;
     for (std::uint32_t t = 0; t < n; ++t)
-        first_chart_[t] = first_chart_[t] == t ? n_charts++ : first_chart_[first_chart_[t]];
-    chart_parent_.resize(n_charts);
-    std::iota(chart_parent_.begin(), chart_parent_.end(), 0u);
-    n_triangles_.assign(n_charts, 0);
-    moments_.resize(n_charts);
+        charts_.first[t] = charts_.first[t] == t ? n_charts++ : charts_.first[charts_.first[t]];
+    charts_.parent.resize(n_charts);
+    std::iota(charts_.parent.begin(), charts_.parent.end(), 0u);
+    charts_.n_triangles.assign(n_charts, 0);
+    charts_.moments.resize(n_charts);
     for (std::uint32_t t = 0; t < n; ++t) {
-        ++n_triangles_[first_chart_[t]];
-        moments_[first_chart_[t]].add(NormalMoments::of(patch_.area[t], patch_.normal[t]));
+        ++charts_.n_triangles[charts_.first[t]];
+        charts_.moments[charts_.first[t]].add(NormalMoments::of(patch_.area[t], patch_.normal[t]));
     }
-    error_.resize(n_charts);
-    for (std::uint32_t c = 0; c < n_charts; ++c) error_[c] = moments_[c].error();
+    charts_.error.resize(n_charts);
+    for (std::uint32_t c = 0; c < n_charts; ++c) charts_.error[c] = charts_.moments[c].error();
 }
 
 void SeamGraph::count_seams_at_vertices() {
@@ -164,7 +164,7 @@ std::uint32_t SeamGraph::chain_of(std::uint32_t edge) const {
 }
 
 std::uint32_t SeamGraph::chart_of(std::uint32_t triangle) const {
-    return find_root(chart_parent_, first_chart_[triangle]);
+    return find_root(charts_.parent, charts_.first[triangle]);
 }
 
 /// The chain is a whole loop, so that gluing it would leave no border.
@@ -237,11 +237,11 @@ void SeamGraph::simplify_at(std::uint32_t vertex, std::vector<std::uint32_t>& ch
 void SeamGraph::take_away(std::uint32_t chain, std::vector<std::uint32_t>& changed) {
     const std::uint32_t a = chart_of(half_[chain] / 3);
     const std::uint32_t b = chart_of(patch_.twin[half_[chain]] / 3);
-    chart_parent_[std::max(a, b)] = std::min(a, b);
+    charts_.parent[std::max(a, b)] = std::min(a, b);
     if (a != b) {
-        moments_[std::min(a, b)].add(moments_[std::max(a, b)]);
-        error_[std::min(a, b)] = moments_[std::min(a, b)].error();
-        n_triangles_[std::min(a, b)] += n_triangles_[std::max(a, b)];
+        charts_.moments[std::min(a, b)].add(charts_.moments[std::max(a, b)]);
+        charts_.error[std::min(a, b)] = charts_.moments[std::min(a, b)].error();
+        charts_.n_triangles[std::min(a, b)] += charts_.n_triangles[std::max(a, b)];
     }
     for (std::uint32_t e = chain; e != kNone; e = next_[e]) {
         seam_[e] = 0;
@@ -263,17 +263,17 @@ double SeamGraph::cost(std::uint32_t chain, const GluingLimits& limits) const {
     const std::uint32_t a = chart_of(half_[chain] / 3);
     const std::uint32_t b = chart_of(patch_.twin[half_[chain]] / 3);
     if (a == b || is_closed(chain)) return kNever;
-    if (n_triangles_[a] + n_triangles_[b] > limits.triangles) return kNever;
+    if (charts_.n_triangles[a] + charts_.n_triangles[b] > limits.triangles) return kNever;
     if (bent_[chain] > limits.crease * length_[chain]) return kNever;
-    NormalMoments both = moments_[a];
-    both.add(moments_[b]);
+    NormalMoments both = charts_.moments[a];
+    both.add(charts_.moments[b]);
     if (both.area > limits.area) return kNever;
     if (glm::dot(both.first, both.first) < limits.mean_normal * limits.mean_normal * both.area * both.area)
         return kNever;
     const double error = both.error();
     if (error > limits.error * both.area) return kNever;
-    const double growth = std::max(0.0, error - error_[a] - error_[b]);
-    const double small = std::min(moments_[a].area, moments_[b].area);
+    const double growth = std::max(0.0, error - charts_.error[a] - charts_.error[b]);
+    const double small = std::min(charts_.moments[a].area, charts_.moments[b].area);
     // Regular meshes are full of equal costs that rounding would put in order by chance,
     // and so by the mesh's unit: a small difference by number puts them in order for good.
     const double tie = 1 + kTie * uniform(0, chain);
@@ -286,7 +286,7 @@ std::vector<SeamGraph::GlueEntry> SeamGraph::all_glue_entries(const GluingLimits
     entries.reserve(half_.size());
     for (std::uint32_t e = 0; e < half_.size(); ++e)
         if (seam_[e] && chain_parent_[e] == e) entries.push_back({kNever, e, version_[e]});
-    for (std::uint32_t c = 0; c < chart_parent_.size(); ++c) chart_parent_[c] = find_root(chart_parent_, c);
+    for (std::uint32_t c = 0; c < charts_.parent.size(); ++c) charts_.parent[c] = find_root(charts_.parent, c);
     parallel_for(entries.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) entries[i].cost = cost(entries[i].chain, limits);
     });

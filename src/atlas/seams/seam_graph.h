@@ -68,15 +68,22 @@ class SeamGraph {
 
     /// A number below that of the charts to begin with: the least of those glued together.
     std::uint32_t chart_of(std::uint32_t triangle) const;
-    std::size_t n_charts_at_first() const { return chart_parent_.size(); }
+    std::size_t n_charts_at_first() const { return charts_.parent.size(); }
     std::size_t n_edges() const { return half_.size(); }  ///< ids of chains lie below
-    const NormalMoments& moments(std::uint32_t chart) const { return moments_[chart]; }
-    std::uint32_t n_triangles(std::uint32_t chart) const { return n_triangles_[chart]; }
+    const NormalMoments& moments(std::uint32_t chart) const { return charts_.moments[chart]; }
+    std::uint32_t n_triangles(std::uint32_t chart) const { return charts_.n_triangles[chart]; }
     std::vector<std::uint8_t> seams() const;  ///< [3n], borders included
 
   private:
     struct Ends {
         std::uint32_t a, b;
+    };
+    struct Charts {
+        std::vector<std::uint32_t> first;           // [n_triangles] chart to begin with
+        mutable std::vector<std::uint32_t> parent;  // [n_charts] of the forest of charts glued together
+        std::vector<NormalMoments> moments;         // [n_charts]
+        std::vector<double> error;                  // [n_charts] costly to find anew for each of their chains
+        std::vector<std::uint32_t> n_triangles;     // [n_charts]
     };
     /// A chain that may be glued; ordered by cost, then by number.
     struct GlueEntry {
@@ -97,18 +104,15 @@ class SeamGraph {
     int seam_edges_at(std::uint32_t vertex, std::array<std::uint32_t, 3>& edges) const;
 
     const Patch& patch_;
-    std::vector<std::uint32_t> edge_of_;      // [3n], kNone where there was no seam to begin with
-    std::vector<std::uint32_t> half_;         // [n_edges] one half-edge each
-    std::vector<std::uint8_t> seam_;          // [n_edges]
-    std::vector<std::uint32_t> first_chart_;  // [n]
-    mutable std::vector<std::uint32_t> chain_parent_, chart_parent_;
+    std::vector<std::uint32_t> edge_of_;  // [3n], kNone where there was no seam to begin with
+    std::vector<std::uint32_t> half_;     // [n_edges] one half-edge each
+    std::vector<std::uint8_t> seam_;      // [n_edges]
+    mutable std::vector<std::uint32_t> chain_parent_;
     std::vector<std::uint32_t> next_, tail_;  // lists of the edges of a chain
     std::vector<Ends> ends_;
     std::vector<float> length_, bent_;  // of chains: sum of length, of length × angle
     std::vector<std::uint32_t> version_;
-    std::vector<NormalMoments> moments_;      // of charts
-    std::vector<double> error_;               // of charts: costly to find anew for each of their chains
-    std::vector<std::uint32_t> n_triangles_;  // of charts
+    Charts charts_;
     std::vector<std::uint32_t> vertex_half_;  // [n_vertices] a half-edge that leaves it
     std::vector<std::uint32_t> degree_;       // seam edges at a vertex, borders included
     std::vector<std::uint8_t> stays_;         // vertex lies on a border or wants its slit

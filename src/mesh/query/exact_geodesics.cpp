@@ -55,16 +55,16 @@ void ExactGeodesics::begin(const TriangleMesh& mesh, double radius, double merge
     vertices_.clear();
     windows_.clear();
     arrivals_.clear();
-    queue_.clear();
-    rings_.fill(kNone);
-    ring_ = 0;
+    queue_.entries.clear();
+    queue_.rings.fill(kNone);
+    queue_.ring = 0;
 }
 
 void ExactGeodesics::enqueue(double distance, std::uint32_t index, bool vertex) {
     const double ring = std::min(distance / radius_ * kRings, kRings - 1.0);
-    std::uint32_t& list = rings_[std::max(static_cast<std::size_t>(ring), ring_)];
-    queue_.push_back({index, vertex, list});
-    list = static_cast<std::uint32_t>(queue_.size() - 1);
+    std::uint32_t& list = queue_.rings[std::max(static_cast<std::size_t>(ring), queue_.ring)];
+    queue_.entries.push_back({index, vertex, list});
+    list = static_cast<std::uint32_t>(queue_.entries.size() - 1);
 }
 
 std::uint32_t ExactGeodesics::vertex_of(std::uint32_t vertex) {
@@ -332,13 +332,13 @@ bool ExactGeodesics::spread(const TriangleMesh& mesh, std::uint32_t triangle, co
         const Vec2 next = k == 0 ? third : Vec2{0};
         e = glm::normalize(next - corner);
     }
-    while (ring_ < kRings) {
-        if (rings_[ring_] == kNone) {
-            ++ring_;
+    while (queue_.ring < kRings) {
+        if (queue_.rings[queue_.ring] == kNone) {
+            ++queue_.ring;
             continue;
         }
-        const Next next = queue_[rings_[ring_]];
-        rings_[ring_] = next.next;
+        const Next next = queue_.entries[queue_.rings[queue_.ring]];
+        queue_.rings[queue_.ring] = next.next;
         if (next.vertex) {
             bend(Arrival(arrivals_[next.index]));
             continue;
@@ -350,7 +350,7 @@ bool ExactGeodesics::spread(const TriangleMesh& mesh, std::uint32_t triangle, co
         if (!is_dominated(faces_[w.face], w.edge, w.from, w.to, {w.source, w.before, w.turn, w.root}))
             propagate(next.index);
         // Their number grows with the area.
-        const double share = static_cast<double>(ring_ + 1) / kRings,
+        const double share = static_cast<double>(queue_.ring + 1) / kRings,
                      expected = static_cast<double>(limits.windows) * share * share;
         const auto n = static_cast<double>(windows_.size());
         if (windows_.size() > limits.windows || (windows_.size() > kFewWindows && n > kDense * expected)) return false;

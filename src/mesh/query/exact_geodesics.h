@@ -8,11 +8,13 @@
 #include "mesh/triangle_mesh.h"
 
 /// \file
-/// Exact geodesics on a triangle mesh from one point, within a radius. Windows of straight paths propagate from
-/// edge to edge in the order of their distance ([Mitchell1987]; one angle, one split:
-/// [Chen1990]; windows dominated by a vertex are dropped: [Xin2009]; those of one source are merged:
-/// [Surazhsky2005]). Bent paths pass vertices whose
-/// angles exceed 2π, or border vertices. Called by `footprint` where the surface is occluded.
+/// Exact geodesics on a triangle mesh from one point, within a radius. Called by `footprint` where the surface is
+/// occluded.
+///
+/// Windows of straight paths propagate from edge to edge in the order of their distance [Mitchell1987], with one angle,
+/// one split [Chen1990]. Windows dominated by a vertex are dropped [Xin2009]; those of one source are merged
+/// [Surazhsky2005]. Bent paths pass vertices whose angles exceed 2π, or border vertices.
+///
 /// CGAL's Surface_mesh_shortest_path is the truth in tests/footprint/geodesic_test.cpp: 1667 paths of at most 30 mm on
 /// the shipped car and bowl differ by 2.5e-8 m at most. It takes 12 and 23 times as long (one run, by turns: 0.074 s to
 /// 0.006 s, 1.18 s to 0.051 s for 20 origins each).
@@ -23,7 +25,7 @@ class ExactGeodesics {
   public:
     /// Limits of a search.
     struct Limits {
-        std::size_t windows = 1'000'000;
+        std::size_t windows = 1'000'000;  ///< most windows, > 0
         /// Metres, 0: none. Windows that meet on an edge are merged when their sources lie as near to each other. Each
         /// vertex of a surface that is flat or bends gently parts windows by less than that. Lengths differ by less
         /// than `merge`, directions by some of it over the length of the path.
@@ -36,6 +38,7 @@ class ExactGeodesics {
     bool spread(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin, double radius,
                 const Limits& limits);
 
+    /// The shortest path from the origin to a point.
     struct Geodesic {
         double length = std::numeric_limits<double>::infinity();  ///< metres; infinite: none within the radius
         Vec3 start_direction{0};                                  ///< unit, in the plane of the origin's triangle
@@ -64,6 +67,7 @@ class ExactGeodesics {
         /// Shortest path over edge k to the third corner: length, crossing point on the edge.
         std::array<double, 3> nearest, crossing;
     };
+    /// A vertex within the radius.
     struct Vertex {
         double distance = std::numeric_limits<double>::infinity();
         Vec2 start_direction{0};  ///< unit, in the frame of edge 0 of the origin's triangle
@@ -93,12 +97,20 @@ class ExactGeodesics {
         bool vertex;
         std::uint32_t next;
     };
+    /// Windows and arrivals by distance: rings of equal width, each a list.
+    struct Queue {
+        std::vector<Next> entries;
+        std::array<std::uint32_t, kRings> rings;  ///< by distance: lists of `entries`
+        std::size_t ring = 0;                     ///< being processed
+    };
+    /// Where the straight paths of a window start: the origin, or a vertex.
     struct Source {
         Vec2 at;  ///< in the frame of the edge crossed, above it
         double before;
         Vec2 turn;
         std::uint32_t root;
     };
+    /// Corner of a face.
     struct Corner {
         std::uint32_t face;
         int corner;
@@ -132,9 +144,7 @@ class ExactGeodesics {
     std::vector<Vertex> vertices_;
     std::vector<Window> windows_;
     std::vector<Arrival> arrivals_;
-    std::vector<Next> queue_;
-    std::array<std::uint32_t, kRings> rings_;  ///< by distance: lists of `queue_`
-    std::size_t ring_ = 0;                     ///< being processed
+    Queue queue_;
     std::vector<Corner> left_, right_;
 };
 

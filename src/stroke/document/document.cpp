@@ -24,7 +24,7 @@ Document::Document(const Model& model, const DocumentOptions& options)
       appearance_(model, materials_, layers_, palette_, parts_),
       film_(model),
       history_(options.undo_bytes),
-      plan_scratch_(std::make_unique<PlanScratchPool>()) {}
+      scratch_{.flat_texels = nullptr, .plans = std::make_unique<PlanScratchPool>(), .tile_reach = nullptr} {}
 
 Document::~Document() = default;
 

@@ -114,7 +114,7 @@ class Document {
     StrokeReport end();
     void cancel();
     /// The stroke begun; null between strokes.
-    const StrokeSession* session() const { return session_.get(); }
+    const StrokeSession* session() const { return in_work_.session.get(); }
 
     /// Takes over a stored journal, ids kept, and performs what is not hidden. Returns a report per stroke.
     std::vector<StrokeReport> replay(std::vector<JournalEntry> entries, const ProgressFn& progress = {});
@@ -191,6 +191,17 @@ class Document {
     void forget_pigments();
     void repaint_all();
 
+    /// What is computed once and used by many entries.
+    struct Scratch {
+        std::unique_ptr<FlatTexels> flat_texels;  ///< of the last area
+        std::unique_ptr<PlanScratchPool> plans;
+        std::unique_ptr<TileReach> tile_reach;  ///< of the model, made for the first batch of strokes
+    };
+    struct StrokeInWork {
+        std::unique_ptr<StrokeSession> session;
+        JournalEntry entry;  ///< its header, from `begin` to `end`
+    };
+
     const Model& model_;
     DocumentOptions options_;
     Journal journal_;
@@ -202,13 +213,10 @@ class Document {
     BrushesInHand brushes_;
     Appearance appearance_;
     ModelFilm film_;
-    std::unique_ptr<FlatTexels> flat_texels_;  ///< of the last area
     UndoHistory history_;
-    std::unique_ptr<PlanScratchPool> plan_scratch_;
-    std::unique_ptr<TileReach> tile_reach_;   ///< of the model, made for the first batch of strokes
-    std::unique_ptr<StrokeSession> session_;  ///< the stroke in work
+    Scratch scratch_;
+    StrokeInWork in_work_;
     PoseFn watcher_;
-    JournalEntry open_;  ///< its header, from `begin` to `end`
 };
 
 /// Texels of all layers, and of the palette where there is something on it: what a project stores.

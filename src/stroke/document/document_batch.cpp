@@ -181,7 +181,8 @@ void Document::plan_path(BatchStroke& planned) const {
     const std::vector<brush::Pose>& poses = planned.path.poses;
     planned.parts =
         parts_of_path(poses, std::max(kLeastPart * planned.spacing, 0.5 * brush::tuft_width(*planned.preset)));
-    planned.tiles = tile_reach_->tiles_at(reached_places(surface(), poses, planned.parts, *planned.preset, texel));
+    planned.tiles =
+        scratch_.tile_reach->tiles_at(reached_places(surface(), poses, planned.parts, *planned.preset, texel));
 }
 
 void Document::start_session(BatchStroke& planned) const {
@@ -210,7 +211,7 @@ void Document::paint_step(BatchStroke& stroke, std::size_t step, const ProgressF
 }
 
 void Document::paint_batch(std::vector<BatchStroke>& batch, const ProgressFn& progress) {
-    if (!tile_reach_) tile_reach_ = std::make_unique<TileReach>(model_.texels);
+    if (!scratch_.tile_reach) scratch_.tile_reach = std::make_unique<TileReach>(model_.texels);
     std::atomic<std::size_t> first_fault{batch.size()};
     const auto guarded = [&](std::size_t i, const auto& work) {
         if (batch[i].hidden() || i >= first_fault) return;

@@ -155,9 +155,9 @@ FillResult Document::fill_area(const Fill& fill) {
         films.push_back(stop.film >= 0 ? stop.film : stop.opacity * materials_.ink(stop.ink).film);
     }
     const FlatFrame frame{area.placement, area.low, area.high, area.edges};
-    if (!flat_texels_ || flat_texels_->frame() != frame)
-        flat_texels_ = std::make_unique<FlatTexels>(model_, surface(), frame);
-    return apply_area(fill, target(fill.layer, fill.mask), *flat_texels_, mixes, films);
+    if (!scratch_.flat_texels || scratch_.flat_texels->frame() != frame)
+        scratch_.flat_texels = std::make_unique<FlatTexels>(model_, surface(), frame);
+    return apply_area(fill, target(fill.layer, fill.mask), *scratch_.flat_texels, mixes, films);
 }
 
 StrokeReport Document::fill(std::uint64_t id, const Fill& fill) {
@@ -197,7 +197,7 @@ void Document::edit_parts(std::uint64_t id, const PartEdit& edit) {
 void Document::set_parts(PartTable table) {
     if (table == parts_.table()) return;
     film_.release();
-    flat_texels_.reset();
+    scratch_.flat_texels.reset();
     const bool same = have_same_substrates(table, parts_.table());
     std::vector<std::uint32_t> slots;
     const auto add_slots = [&] {

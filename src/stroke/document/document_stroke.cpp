@@ -64,28 +64,28 @@ void Document::check_size(const JournalEntry& entry) {
 void Document::begin(JournalEntry entry) {
     check_layer(entry);
     cancel();
-    session_ = make_session(std::get<PaintStroke>(entry.content));
-    if (thread_count() > 1) session_->forecast_hand();
-    open_ = std::move(entry);
+    in_work_.session = make_session(std::get<PaintStroke>(entry.content));
+    if (thread_count() > 1) in_work_.session->forecast_hand();
+    in_work_.entry = std::move(entry);
 }
 
 void Document::extend(std::span<const brush::Pose> poses, const std::function<void()>& painted) {
-    session_->extend(poses, painted);
+    in_work_.session->extend(poses, painted);
 }
 
 StrokeReport Document::end() {
-    open_.content = session_->stroke();
+    in_work_.entry.content = in_work_.session->stroke();
     StrokeReport report = finish_session(journal_.next_id());
-    journal_.append(std::move(open_));
+    journal_.append(std::move(in_work_.entry));
     return report;
 }
 
 void Document::cancel() {
-    if (!session_) return;
+    if (!in_work_.session) return;
     std::vector<LayerTiles> before;
-    before.push_back({session_->stroke().layer, session_->take_snapshots()});
+    before.push_back({in_work_.session->stroke().layer, in_work_.session->take_snapshots()});
     restore(before);
-    session_.reset();
+    in_work_.session.reset();
     forget_pigments();
 }
 
@@ -141,15 +141,16 @@ SessionInput Document::session_input(PaintStroke stroke, const TilePlan* plan) {
             .substrates = target.substrates,
             .plan = plan,
             .wet = std::move(wet),
-            .scratch = *plan_scratch_,
+            .scratch = *scratch_.plans,
             .seams = seams,
             .record_forces = options_.record_forces};
 }
 
 // Ends the stroke in work without a word to the journal.
 StrokeReport Document::finish_session(std::uint64_t id) {
-    StrokeReport report = put_down(id, session_->stroke(), session_->finish(), layers_.pigments().size());
-    session_.reset();
+    StrokeReport report =
+        put_down(id, in_work_.session->stroke(), in_work_.session->finish(), layers_.pigments().size());
+    in_work_.session.reset();
     return report;
 }
 
@@ -188,20 +189,20 @@ std::unique_ptr<PathAhead> Document::plan_path_ahead(const JournalEntry& entry) 
 StrokeReport Document::draw(std::uint64_t id, const PaintStroke& stroke, const HandPath& path,
                             const ProgressFn& progress) {
     cancel();
-    session_ = make_session(stroke);
+    in_work_.session = make_session(stroke);
     try {
-        begin_path(*session_, path, progress);
+        begin_path(*in_work_.session, path, progress);
         if (thread_count() > 1 && !watcher_) {
-            if (std::unique_ptr<StrokeForecast> forecast = session_->forecast(path.poses)) {
+            if (std::unique_ptr<StrokeForecast> forecast = in_work_.session->forecast(path.poses)) {
                 forecast->compute_ahead();
-                session_->use(std::move(forecast));
+                in_work_.session->use(std::move(forecast));
             }
         }
         const std::size_t n = path.poses.size();
-        if (!watcher_) paint_poses(*session_, path.poses, 0, n);
+        if (!watcher_) paint_poses(*in_work_.session, path.poses, 0, n);
         for (std::size_t i = 0; watcher_ && i < n; ++i) {
-            paint_poses(*session_, path.poses, i, i + 1);
-            watcher_(*session_, static_cast<double>(i + 1) / static_cast<double>(n));
+            paint_poses(*in_work_.session, path.poses, i, i + 1);
+            watcher_(*in_work_.session, static_cast<double>(i + 1) / static_cast<double>(n));
         }
         StrokeReport report = finish_session(id);
         note_origin(report, stroke, target(stroke.layer, 0).surface);
