@@ -24,8 +24,7 @@ struct Sphere {
 ///   r' = (r² + l²) / 2l,   D' = D + (l - r') (E - D)/l
 /// until l <= (1 + ε) r; l is returned as the radius. Converges like 1/k: about 1/ε steps of
 /// one pass over the points at worst, few for slender sets. An empty set gives a point.
-/// Source: [Huang2018], section 4; bound after
-/// [Badoiu2003].
+/// Precondition: `epsilon` > 0, finite points. Source: [Huang2018], section 4; bound after [Badoiu2003].
 Sphere expand_ball(std::span<const Vec3> points, double epsilon = 0.01, int max_iterations = 2000);
 
 }  // namespace tuft::contact

@@ -13,8 +13,9 @@ struct RTCSceneTy;
 /// Embree's tree of triangles. Inside `mesh` only: query/surface_query.h and repair/exposure.h are made of it.
 namespace tuft::mesh {
 
-/// Owns a device and a scene with one geometry. Triangles stay where they are and must outlive it. Throws `Error`
-/// where memory is short.
+/// Owns a device and a scene with one geometry. Precondition: every index of a triangle is in range, points are finite.
+/// Triangles stay where they are and must outlive it; positions are copied. The same mesh gives the same tree. Throws
+/// `Error` where memory is short. Any thread may query.
 class RayTree {
   public:
     RayTree(std::span<const Vec3f> positions, std::span<const std::array<std::uint32_t, 3>> triangles);

@@ -11,9 +11,10 @@
 /// Flattening of a disk with little stretch: LSCM, ARAP and untangling. Called by atlas/charts.
 namespace tuft::atlas {
 
-/// Energies below are per area of the chart: the mean of (σ₁ − 1)² + (σ₂ − 1)².
+/// Options of `arap` and `flatten`. Energies are per area of the chart: the mean of (σ₁ − 1)² + (σ₂ − 1)², with σ the
+/// singular values of the map of a triangle.
 struct ArapOptions {
-    int iterations = 40;
+    int iterations = 40;                         ///< most steps, ≥ 1
     double tolerance = 1e-3;                     ///< stop when the energy falls by less than this fraction per step
     double converged_energy = 1e-12;             ///< stop below this energy
     double abandon_energy = 1e300;               ///< stop when the predicted energy stays above this
@@ -38,7 +39,7 @@ double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& op
 /// Returns the energy of `arap` for given UVs.
 double arap_energy(const ChartMesh& chart, const std::vector<Vec2>& uv);
 
-/// Moves vertices of triangles without positive area, and their neighbours, until every triangle round them has
+/// Moves the UVs of triangles without positive area, and of their neighbours, until every triangle round them has
 /// positive area. Returns true when none is left.
 bool untangle(const ChartMesh& chart, std::vector<Vec2>& uv);
 

@@ -16,12 +16,14 @@
 /// whites (ICC.1:2010, annex E; [Lam1985]), RGB' = N'⁻¹ A N RGB.
 namespace tuft::ink {
 
+/// A space that pictures are stored in.
 enum class ColourSpace {
     srgb,        ///< IEC 61966-2-1
     display_p3,  ///< primaries of SMPTE RP 431-2, white D65, curve of sRGB
     acescg,      ///< AP1 of ACES (S-2014-004), white of ACES, linear
 };
 
+/// Rows of a matrix that multiplies a column.
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
 /// CIE 1931 chromaticity.

@@ -10,6 +10,7 @@
 /// How a stroke becomes texels. Stored with every stroke in the journal, so that a replay gives the same bits.
 namespace tuft::stroke {
 
+/// What a brush holds as a stroke begins.
 enum class DipMode {
     each,        ///< a fresh full brush for every stroke
     persistent,  ///< the hair and ink that the last entry with the brush left
@@ -18,6 +19,7 @@ enum class DipMode {
 /// Pressure of flat strokes whose device measured none (gesture/hand_pressure.h).
 enum class PressureFrom { none, speed, dwell, speed_dwell };
 
+/// What ink does on the surface.
 enum class FilmModel {
     still,  ///< ink stays where it is deposited
     wet,    ///< ink flows, soaks in, dries, and is exchanged both ways between tuft and surface
@@ -28,16 +30,16 @@ struct StrokeSettings {
     brush::SpineMethod spine = brush::SpineMethod::rod;      ///< `rod`: the method of the brush's preset
     footprint::Mapping footprint = footprint::Mapping::log;  ///< along the surface, or on one plane
     contact::Method contact = contact::Method::exact;
-    double spacing = 1.0;            ///< between two stamps, 0–1000; see pose_spacing
+    double spacing = 1.0;            ///< between two stamps, in (0, 1000); see pose_spacing
     bool compensate_tip_lag = true;  ///< flat: the hand leads the ink, which so lies on the samples
     DipMode dip = DipMode::each;
     bool endless = false;                        ///< the tuft holds before every pose what it held at pen down
     PressureFrom pressure = PressureFrom::none;  ///< of flat samples; none: as sampled
-    double smooth = 0;                           ///< strength of the filter (`hand_filter_options`); 0: off
+    double smooth = 0;                           ///< strength of the filter (`hand_filter_options`), 0–100; 0: off
     FilmModel film = FilmModel::still;
-    Vec3 down{0, 0, -1};       ///< direction of gravity, for wet ink, any length; zero: no weight
-    double stabilise = 0;      ///< length of the string that pulls the tip, metres; 0: off
-    double roll = 0;           ///< radians, added to that of flat samples (see StrokeSample)
+    Vec3 down{0, 0, -1};       ///< direction of gravity, for wet ink, length < 1e9; zero: no weight
+    double stabilise = 0;      ///< metres, 0–1: length of the string that pulls the tip; 0: off
+    double roll = 0;           ///< radians, within ±`kMostRoll`, added to that of flat samples (see StrokeSample)
     bool roll_follow = false;  ///< flat: the ferrule's broad side turns across the path, see roll.h
 
     bool operator==(const StrokeSettings&) const = default;
