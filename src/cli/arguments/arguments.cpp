@@ -250,10 +250,10 @@ CLI::App* add_mask(CLI::App& app, MaskWork& mask) {
         ->check(number_in(0.0, 180.0));
     add_point(command, "--chart", mask.chart_mm, "the chart of the atlas at this point, in millimetres");
     command->add_option(
-        "--lasso", mask.lasso,
+        "--lasso", mask.lasso.points,
         "what this polygon encloses: 'X,Y X,Y X,Y ...', millimetres right and up of the middle as seen from --view");
-    add_view_direction(command, mask.view);
-    command->add_flag("--through", mask.through, "the lasso also takes what faces away or is hidden");
+    add_view_direction(command, mask.lasso.view);
+    command->add_flag("--through", mask.lasso.through, "the lasso also takes what faces away or is hidden");
     command->add_option("--invert", mask.invert, "what this mask leaves out");
     command->add_option("--intersect", mask.intersect, "what lies in all of these masks: NAME,...")->delimiter(',');
     command->add_option("--unite", mask.unite, "what lies in any of these masks: NAME,...")->delimiter(',');

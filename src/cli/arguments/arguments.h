@@ -67,52 +67,90 @@ struct PartChoice {
     std::vector<std::string> substrates;  ///< PART=NAME
 };
 
+/// What strokes are painted with, and by which models of brush and contact.
+struct StrokeChoice {
+    std::string brush, ink;             ///< empty: the stroke file's, else the default
+    std::string layer;                  ///< name; empty: the stroke file's, else the first one
+    std::string mask;                   ///< name; empty: the stroke file's, else none
+    bool erases = false;                ///< all strokes erase
+    std::string spine = "rod";          ///< rod | table
+    std::string footprint = "surface";  ///< surface | plane
+    std::string contact = "exact";      ///< exact | vertices
+    std::string dip = "each";           ///< each | persistent | endless
+    std::vector<std::string> prepare;   ///< actions on the full brush before each stroke; see stroke::preparation_of
+};
+
+/// Whether ink flows, and when it dries.
+struct WetInk {
+    std::string film = "still";          ///< still | wet
+    std::vector<double> down{0, 0, -1};  ///< [3] direction of gravity on wet ink, model frame
+    double dry = -1;                     ///< seconds of drying after each stroke file; 0: until dry; < 0: none
+};
+
+/// Correction of the hand, and roll of the holder.
+struct HandChoice {
+    std::string pressure = "none";  ///< none | speed | dwell | speed+dwell, for strokes without pressure
+    double smooth = 0;              ///< strength of the hand's filter; 0: off
+    double stabilise_mm = 0;        ///< length of the stabiliser's string; 0: off
+    double roll_deg = 0;            ///< roll of the holder, added to that of flat strokes
+    bool roll_follow = false;       ///< the broad side of a ferrule turns across the path of flat strokes
+    std::filesystem::path bias;     ///< file of the writer's bias to correct, or empty
+};
+
+/// Where flat strokes go, and how they lie there.
+struct PlaceChoice {
+    std::vector<double> at_mm;      ///< [3] position, or empty
+    std::string on;                 ///< side of the model (stroke::side_name), or empty
+    std::vector<double> read_from;  ///< [3] direction towards the reader of a drawing, or empty
+    std::string snap;               ///< x, y or z: the place lies in the model's middle plane across it; or empty
+    double width_mm = 0;            ///< width of the whole drawing; 0: as in the file
+    std::string mapping;            ///< drape, wrap, project; empty: see place_strokes
+    double turn_deg = 0;            ///< anticlockwise, seen from outside the surface
+    bool mirror = false;            ///< mirrors the drawing from left to right
+    std::string edges;              ///< facing, cut, run-over, end-before, wrap; empty: facing
+    double edge_margin_mm = 2;      ///< of end-before
+};
+
+/// How a drawing becomes strokes and areas.
+struct DrawingChoice {
+    std::string areas;              ///< mask, brush; empty: by the drawing's colours
+    double wide_lines_mm = 1.5;     ///< as painted; lines of a drawing in one ink are areas from this width on
+    std::vector<std::string> only;  ///< layers and named groups of drawings; empty: all
+    bool auto_texel = false;        ///< texels as small as the drawing's detail needs
+    bool fit_brush = false;         ///< scales the brush to the line widths of a drawing
+};
+
+/// Copies of a drawing.
+struct CopyChoice {
+    std::string along;              ///< "rim", "edge" or a stroke file: path of copies; empty: none
+    std::string repeat = "fit";     ///< fit, or a number of copies along it
+    std::string mirror;             ///< some of x, y, z: planes of copies
+    bool readable = false;          ///< mirrored copies keep text and marked groups readable
+    int radial = 1;                 ///< copies round an axis, with the original
+    std::string radial_axis = "z";  ///< x | y | z
+};
+
+/// Files that a painting is written to; empty: not written.
+struct PaintOutput {
+    std::filesystem::path project;   ///< .tuft
+    std::filesystem::path exported;  ///< .glb, .gltf, .obj
+    std::filesystem::path preview;   ///< .png
+    std::filesystem::path forces;    ///< .csv
+};
+
 /// `tuft paint MODEL STROKES...`
 struct Paint {
     std::filesystem::path model;
     std::vector<std::filesystem::path> strokes;
-    std::string brush, ink;              ///< empty: the stroke file's, else the default
-    std::string layer;                   ///< name; empty: the stroke file's, else the first one
-    std::string mask;                    ///< name; empty: the stroke file's, else none
-    bool erases = false;                 ///< all strokes erase
-    std::string spine = "rod";           ///< rod | table
-    std::string footprint = "surface";   ///< surface | plane
-    std::string contact = "exact";       ///< exact | vertices
-    std::string dip = "each";            ///< each | persistent | endless
-    std::string film = "still";          ///< still | wet
-    std::vector<double> down{0, 0, -1};  ///< [3] direction of gravity on wet ink, model frame
-    double dry = -1;                     ///< seconds of drying after each stroke file; 0: until dry; < 0: none
-    std::vector<std::string> prepare;    ///< actions on the full brush before each stroke; see stroke::preparation_of
-    std::string pressure = "none";       ///< none | speed | dwell | speed+dwell, for strokes without pressure
-    double smooth = 0;                   ///< strength of the hand's filter; 0: off
-    double stabilise_mm = 0;             ///< length of the stabiliser's string; 0: off
-    double roll_deg = 0;                 ///< roll of the holder, added to that of flat strokes
-    bool roll_follow = false;            ///< the broad side of a ferrule turns across the path of flat strokes
-    std::filesystem::path bias;          ///< file of the writer's bias to correct, or empty
-    std::vector<double> place_mm;        ///< [3] position of flat strokes, or empty
-    std::string on;                      ///< side of the model (stroke::side_name) for flat strokes, or empty
-    std::vector<double> read_from;       ///< [3] direction towards the reader of a drawing, or empty
-    std::string snap;                    ///< x, y or z: the place lies in the model's middle plane across it; or empty
-    double place_width_mm = 0;           ///< width of the whole drawing; 0: as in the file
-    std::string mapping;                 ///< drape, wrap, project; empty: see place_strokes
-    double place_turn_deg = 0;           ///< anticlockwise, seen from outside the surface
-    bool place_mirror = false;           ///< mirrors the drawing from left to right
-    std::string areas;                   ///< mask, brush; empty: by the drawing's colours
-    std::string along;                   ///< "rim", "edge" or a stroke file: path of copies; empty: none
-    std::string repeat = "fit";          ///< fit, or a number of copies along it
-    std::string edges;                   ///< facing, cut, run-over, end-before, wrap; empty: facing
-    double edge_margin_mm = 2;           ///< of end-before
-    double wide_lines_mm = 1.5;          ///< as painted; lines of a drawing in one ink are areas from this width on
-    std::vector<std::string> only;       ///< layers and named groups of drawings; empty: all
-    std::string mirror;                  ///< some of x, y, z: planes of copies
-    bool readable = false;               ///< mirrored copies keep text and marked groups readable
-    int radial = 1;                      ///< copies round an axis, with the original
-    std::string radial_axis = "z";       ///< x | y | z
-    bool auto_texel = false;             ///< texels as small as the drawing's detail needs
-    bool fit_brush = false;              ///< scales `brush` to the line widths of a drawing
+    StrokeChoice stroke;
+    WetInk wet;
+    HandChoice hand;
+    PlaceChoice place;
+    DrawingChoice drawing;
+    CopyChoice copies;
     Surface surface;
     PartChoice parts;
-    std::filesystem::path project, exported, preview, forces;
+    PaintOutput output;
     View view;
     Common common;
 };
@@ -198,6 +236,13 @@ struct FillWork {
     Common common;
 };
 
+/// Polygon on a view of the model.
+struct LassoChoice {
+    std::string points;  ///< "X,Y X,Y ...", mm, as seen from `view`; empty: none
+    View view;
+    bool through = false;  ///< takes what faces away or is hidden too
+};
+
 /// `tuft mask PROJECT NAME`
 struct MaskWork {
     std::filesystem::path project;
@@ -207,9 +252,8 @@ struct MaskWork {
     std::vector<double> direction, chart_mm;  ///< [3] each, or empty
     double within = 45, soft = 0;             ///< degrees, angle of the normal to `direction`, and its soft range
     double clear_mm = 0;                      ///< distance to sharp edges; 0: none
-    std::string lasso;                        ///< "X,Y X,Y ...", mm, as seen from `view`
-    View view;
-    bool through = false, remove = false;
+    LassoChoice lasso;
+    bool remove = false;
     Common common;
 };
 
@@ -276,24 +320,41 @@ struct Bench {
     Common common;
 };
 
-/// `tuft device list | simulate | test | record`
-struct DeviceWork {
-    std::string what;                 ///< list | simulate | test | record
+/// An arm: the one that a service speaks for, or a simulated one.
+struct ArmChoice {
     std::string preset = "inverse3";  ///< of the arm that is spoken to or simulated
     std::string simulate;             ///< preset to simulate in this process; empty: the arm at `host`
     std::string host = "127.0.0.1";
-    int port = 10001;
+    int port = 10001;  ///< 0 for a server: any free one
+};
+
+/// What a simulated arm and its hand do.
+struct ArmSimulation {
+    std::string motion = "circles";  ///< of the hand
+    std::string fault = "none";      ///< of the server, after `fault_after` seconds
+    double fault_after = 3;          ///< seconds of a connection
+    double delay_ms = 0;             ///< of a force on its way
+};
+
+/// What `tuft device test` tries beside its checks.
+struct ArmTrial {
+    int hands = 0;             ///< random hands
+    double hours = 0;          ///< simulated, one hand
+    bool all_brushes = false;  ///< all shipped ones, not only `brush`
+};
+
+/// `tuft device list | simulate | test | record`
+struct DeviceWork {
+    std::string what;  ///< list | simulate | test | record
+    ArmChoice arm;
+    ArmSimulation simulation;
+    ArmTrial trial;
     double seconds = 10;
     std::string brush = "wolf-medium";
-    std::filesystem::path model;     ///< empty: the shipped bowl
-    std::string motion = "circles";  ///< of the simulated hand
-    std::string fault = "none";      ///< of the simulated server, after `fault_after` seconds
-    double fault_after = 3;
-    double delay_ms = 0;
-    int hands = 0;     ///< random hands beside the tests
-    double hours = 0;  ///< simulated, one hand
-    bool all_brushes = false, restore = false;
-    std::filesystem::path output, replay;
+    std::filesystem::path model;  ///< empty: the shipped bowl
+    bool restore = false;         ///< the coupling's softness is taken away at rest
+    std::filesystem::path output;
+    std::filesystem::path replay;  ///< recording to play in place of an arm, or empty
     Common common;
 };
 
@@ -316,6 +377,16 @@ struct Write : Paint {
 
 inline constexpr double kLeastPageMm = 60;  ///< side of a sheet
 
+/// Sheets of film as they are printed.
+struct PrintChoice {
+    Vec2 page_mm{210, 297};             ///< height 0: a roll
+    std::string grain = "free";         ///< free | up
+    double dpi = 300;                   ///< dots per inch
+    bool plates = false;                ///< a separation for each pigment
+    bool strain_map = false;            ///< pages that show the strain of the film
+    std::string colour_space = "srgb";  ///< srgb | display-p3
+};
+
 /// `tuft decals PROJECT -o OUTPUT`
 struct Decals {
     std::filesystem::path project, output;
@@ -323,13 +394,11 @@ struct Decals {
     std::string mask;                 ///< name; empty: all that is painted
     std::vector<std::string> layers;  ///< as in `View`
     Recolouring recolouring;
-    double max_strain = 0.03;
-    double bleed_mm = 3, overlap_mm = 1, join_mm = 10;
-    Vec2 page_mm{210, 297};      ///< height 0: a roll
-    std::string grain = "free";  ///< free | up
-    double dpi = 300;
-    bool plates = false, strain_map = false;
-    std::string colour_space = "srgb";  ///< srgb | display-p3
+    double max_strain = 0.03;  ///< up to which the film follows the surface
+    double bleed_mm = 3;       ///< film beyond the paint
+    double overlap_mm = 1;     ///< of two panels
+    double join_mm = 10;       ///< islands of paint nearer than this share a piece
+    PrintChoice print;
     Common common;
 };
 

@@ -41,12 +41,12 @@ void read_page(Decals& d, const std::string& text) {
     };
     for (const Named& page : {Named{"A4", 210, 297}, Named{"A3", 297, 420}, Named{"roll", 1370, 0}})
         if (text == page.name) {
-            d.page_mm = {page.width, page.height};
+            d.print.page_mm = {page.width, page.height};
             return;
         }
     if (text.starts_with("roll:"))
         if (const std::optional<double> width = millimetres_of(text.substr(5)); width && *width >= kLeastPageMm) {
-            d.page_mm = {*width, 0};
+            d.print.page_mm = {*width, 0};
             if (*width <= kLongestMm) return;
         }
     const auto cross = text.find('x');
@@ -55,7 +55,7 @@ void read_page(Decals& d, const std::string& text) {
         const std::optional<double> height = millimetres_of(text.substr(cross + 1));
         if (width && height && *width >= kLeastPageMm && *height >= kLeastPageMm && *width <= kLongestMm &&
             *height <= kLongestMm) {
-            d.page_mm = {*width, *height};
+            d.print.page_mm = {*width, *height};
             return;
         }
     }
@@ -96,16 +96,16 @@ CLI::App* add_decals(CLI::App& app, Decals& d) {
          "--page", [&d](const std::string& text) { read_page(d, text); },
          "A4 (default), A3, WxH, roll (1370 mm wide) or roll:WIDTH")
         ->type_name("PAGE");
-    s->add_option("--grain", d.grain,
+    s->add_option("--grain", d.print.grain,
                   "free: pieces are turned to fill the page (default); up: all point up the page, along the grain of "
                   "the film")
         ->check(CLI::IsMember({"free", "up"}));
-    s->add_option("--dpi", d.dpi, "dots per inch of the print")->check(number_in(10, 4800));
-    s->add_flag("--plates", d.plates, "print one plate for each pigment, a separation of its name (.pdf)");
-    s->add_option("--colour-space", d.colour_space,
+    s->add_option("--dpi", d.print.dpi, "dots per inch of the print")->check(number_in(10, 4800));
+    s->add_flag("--plates", d.print.plates, "print one plate for each pigment, a separation of its name (.pdf)");
+    s->add_option("--colour-space", d.print.colour_space,
                   "of the pictures, whose profile is stored: srgb (default), display-p3")
         ->check(CLI::IsMember({"srgb", "display-p3"}));
-    s->add_flag("--strain-map", d.strain_map, "append pages that show the strain of the film");
+    s->add_flag("--strain-map", d.print.strain_map, "append pages that show the strain of the film");
     s->add_option("--guide", d.guide,
                   "folder for a placing guide: a picture of the model for each piece, and lines.obj, the cut lines on "
                   "the model")

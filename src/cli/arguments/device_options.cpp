@@ -4,15 +4,15 @@ namespace tuft::cli {
 namespace {
 
 void add_arm(CLI::App* app, DeviceWork& d) {
-    app->add_option("--preset", d.preset, "figures of the arm: touch, inverse3 (default), falcon or omega.6")
+    app->add_option("--preset", d.arm.preset, "figures of the arm: touch, inverse3 (default), falcon or omega.6")
         ->type_name("ARM");
-    app->add_option("--host", d.host, "address of the arm's service (default: 127.0.0.1)");
-    app->add_option("--port", d.port, "port of the arm's service (default: 10001)")->check(number_in(0, 65535));
+    app->add_option("--host", d.arm.host, "address of the arm's service (default: 127.0.0.1)");
+    app->add_option("--port", d.arm.port, "port of the arm's service (default: 10001)")->check(number_in(0, 65535));
     add_common(app, d.common);
 }
 
 void add_hand(CLI::App* app, DeviceWork& d) {
-    app->add_option("--simulate", d.simulate,
+    app->add_option("--simulate", d.arm.simulate,
                     "simulate an arm in a hand, in place of a real one: touch, inverse3, falcon or omega.6")
         ->type_name("ARM");
     app->add_option("--seconds", d.seconds, "seconds that it takes (default: 10)")->check(number_in(0.1, 86400));
@@ -23,7 +23,7 @@ void add_hand(CLI::App* app, DeviceWork& d) {
 }
 
 void add_motion(CLI::App* app, DeviceWork& d) {
-    app->add_option("--motion", d.motion, "what the simulated hand does (default: circles)")
+    app->add_option("--motion", d.simulation.motion, "what the simulated hand does (default: circles)")
         ->check(CLI::IsMember({"press", "press-fast", "drag", "circles", "taps", "rocking", "rest", "hit", "slide"}));
 }
 
@@ -40,23 +40,25 @@ CLI::App* add_device(CLI::App& app, DeviceWork& d) {
     simulate->add_option("--brush", d.brush, "brush that the hand holds (default: wolf-medium)")->type_name("BRUSH");
     simulate->add_option("--model", d.model, "model that the hand paints (default: the bowl)");
     add_motion(simulate, d);
-    simulate->add_option("--delay", d.delay_ms, "delay of a force on its way, in milliseconds (default: 0)")
+    simulate->add_option("--delay", d.simulation.delay_ms, "delay of a force on its way, in milliseconds (default: 0)")
         ->check(number_in(0, 20));
     simulate
-        ->add_option("--fault", d.fault, "fault of the server, to test a program that is joined to it (default: none)")
+        ->add_option("--fault", d.simulation.fault,
+                     "fault of the server, to test a program that is joined to it (default: none)")
         ->check(CLI::IsMember({"none", "dies", "nan", "jumps", "silent", "floods"}));
     simulate
-        ->add_option("--fault-after", d.fault_after,
+        ->add_option("--fault-after", d.simulation.fault_after,
                      "seconds of a connection after which the fault begins (default: 3)")
         ->check(number_in(0, 86400));
     auto* test = device->add_subcommand("test", "check safety, stability and loop of an arm (hands off), or simulated");
     add_arm(test, d);
     add_hand(test, d);
-    test->add_option("--hands", d.hands, "try so many random hands too (10000: ten minutes of one core)")
+    test->add_option("--hands", d.trial.hands, "try so many random hands too (10000: ten minutes of one core)")
         ->check(number_in(0, 1000000));
-    test->add_option("--hours", d.hours, "try one hand for so many simulated hours too")->check(number_in(0, 100));
-    test->add_flag("--all-brushes", d.all_brushes, "all shipped brushes, not only the one of --brush");
-    test->add_option("--delay", d.delay_ms, "delay of a force on its way, in milliseconds (default: 0)")
+    test->add_option("--hours", d.trial.hours, "try one hand for so many simulated hours too")
+        ->check(number_in(0, 100));
+    test->add_flag("--all-brushes", d.trial.all_brushes, "all shipped brushes, not only the one of --brush");
+    test->add_option("--delay", d.simulation.delay_ms, "delay of a force on its way, in milliseconds (default: 0)")
         ->check(number_in(0, 20));
     auto* record = device->add_subcommand("record", "record what an arm does and the forces that it is given (.csv)");
     add_arm(record, d);

@@ -25,18 +25,18 @@ void take_substrate(Paint& paint, const std::string& value) {
 
 /// Brush, ink, layer, mask and substrate.
 void add_materials(CLI::App* p, Paint& paint) {
-    p->add_option("--brush", paint.brush,
+    p->add_option("--brush", paint.stroke.brush,
                   "brush for all strokes ('tuft brush' lists them; goat-small*0.5 is one of half the size; default: "
                   "what they name, else wolf-medium)");
-    p->add_option("--ink", paint.ink,
+    p->add_option("--ink", paint.stroke.ink,
                   "ink for all strokes: a name ('tuft ink' lists them), a .toml file, or a colour such as '#c03020'; "
                   "dips that a file records keep their own inks "
                   "(default: what they name, else carbon)");
-    p->add_option("--mask", paint.mask, "mask of the project to keep to, for strokes that name none");
+    p->add_option("--mask", paint.stroke.mask, "mask of the project to keep to, for strokes that name none");
     p->add_flag_callback(
-        "--erase", [&paint] { paint.erases = true; },
+        "--erase", [&paint] { paint.stroke.erases = true; },
         "the strokes take ink away, wet and dry, instead of leaving some");
-    p->add_option("--layer", paint.layer, "layer for strokes that name none; it is made when there is none yet");
+    p->add_option("--layer", paint.stroke.layer, "layer for strokes that name none; it is made when there is none yet");
     p->add_option_function<std::vector<std::string>>(
          "--substrate",
          [&paint](const std::vector<std::string>& values) {
@@ -59,21 +59,21 @@ void add_materials(CLI::App* p, Paint& paint) {
 
 /// Models of tuft, footprint and contact.
 void add_models(CLI::App* p, Paint& paint) {
-    p->add_option("--spine", paint.spine,
+    p->add_option("--spine", paint.stroke.spine,
                   "how the tuft bends: rod (live solve; as the brush says), table (query table), or a model of the "
                   "papers: macro "
                   "(hair macros), chain (kinematic chain), truss (spring truss)")
         ->check(CLI::IsMember(std::vector<std::string>(std::begin(brush::kSpineWords), std::end(brush::kSpineWords))));
-    p->add_option("--footprint", paint.footprint, "footprint along the surface, or on one plane")
+    p->add_option("--footprint", paint.stroke.footprint, "footprint along the surface, or on one plane")
         ->check(CLI::IsMember({"surface", "plane"}));
-    p->add_option("--contact", paint.contact, "exact closest points, or weighted distance to vertices")
+    p->add_option("--contact", paint.stroke.contact, "exact closest points, or weighted distance to vertices")
         ->check(CLI::IsMember({"exact", "vertices"}));
 }
 
 /// What happens to the ink before, during and after strokes.
 void add_ink_options(CLI::App* p, Paint& paint) {
     p->add_option(
-         "--dip", paint.dip,
+         "--dip", paint.stroke.dip,
          "each: a fresh full brush for each stroke; persistent: hair and ink stay as the stroke before left them, "
          "until the next dip; endless: a brush that never runs dry")
         ->transform(CLI::Validator(
@@ -83,22 +83,23 @@ void add_ink_options(CLI::App* p, Paint& paint) {
             },
             ""))
         ->check(CLI::IsMember({"each", "persistent", "endless"}));
-    p->add_option("--film", paint.film,
+    p->add_option("--film", paint.wet.film,
                   "still: ink stays where it is put; wet: it flows, soaks in, dries and is picked up")
         ->check(CLI::IsMember({"still", "wet"}));
     p->add_option_function<std::string>(
          "--down",
          [&paint](const std::string& text) {
-             paint.down = numbers(text, ',', 3, kFarthestMm);
-             if (paint.down.empty()) throw CLI::ValidationError("--down", "'" + excerpt(text) + "' is not X,Y,Z");
+             paint.wet.down = numbers(text, ',', 3, kFarthestMm);
+             if (paint.wet.down.empty()) throw CLI::ValidationError("--down", "'" + excerpt(text) + "' is not X,Y,Z");
          },
          "direction of weight for wet ink (0,0,0: none)")
         ->type_name("X,Y,Z");
-    p->add_option("--dry", paint.dry, "let the ink dry for so many seconds after each stroke file; 0: until all is dry")
+    p->add_option("--dry", paint.wet.dry,
+                  "let the ink dry for so many seconds after each stroke file; 0: until all is dry")
         ->check(number_in(0.0, 86400.0))
         ->type_name("SECONDS");
     p->add_option(
-         "--prepare", paint.prepare,
+         "--prepare", paint.stroke.prepare,
          "done with the full brush before it paints, in this order: rinse, wipe[,amount=0.6][,depth=0.3], "
          "dip[:INK][,depth=0.2][,amount=0.5], reshape; side=0.5 of a dip or wipe: only this part of the "
          "width, from the right flank, negative from the left; time=0.3 of a dip: seconds in the dish, in which "
@@ -116,22 +117,22 @@ void add_ink_options(CLI::App* p, Paint& paint) {
 
 /// Filters of the hand and turn of the holder.
 void add_hand_options(CLI::App* p, Paint& paint) {
-    p->add_option("--pressure", paint.pressure,
+    p->add_option("--pressure", paint.hand.pressure,
                   "pressure for flat strokes that have none: none, speed, dwell or speed+dwell")
         ->check(CLI::IsMember({"none", "speed", "dwell", "speed+dwell"}));
-    p->add_option("--smooth", paint.smooth, "steady a shaky hand: 1 takes the jitter of a mouse away, 0 is off")
+    p->add_option("--smooth", paint.hand.smooth, "steady a shaky hand: 1 takes the jitter of a mouse away, 0 is off")
         ->check(number_in(0.0, 100.0));
-    p->add_option("--stabilise", paint.stabilise_mm, "pull the tip on a string of so many millimetres")
+    p->add_option("--stabilise", paint.hand.stabilise_mm, "pull the tip on a string of so many millimetres")
         ->check(number_in(0.0, 1000.0))
         ->type_name("MM");
-    p->add_option("--roll", paint.roll_deg,
+    p->add_option("--roll", paint.hand.roll_deg,
                   "turn the holder about its own axis, anticlockwise as seen from its end; at 0 a wide ferrule lies "
                   "along the width of flat strokes")
         ->check(number_in(-360.0, 360.0))
         ->type_name("DEG");
-    p->add_flag("--roll-follow", paint.roll_follow,
+    p->add_flag("--roll-follow", paint.hand.roll_follow,
                 "turn the broad side of the ferrule across the path as flat strokes go on; --roll is added");
-    p->add_option("--bias,--habit", paint.bias, "correct a writer's bias (.toml, made by 'tuft bias')");
+    p->add_option("--bias,--habit", paint.hand.bias, "correct a writer's bias (.toml, made by 'tuft bias')");
 }
 
 /// Where flat strokes go.
@@ -139,14 +140,14 @@ void add_place_options(CLI::App* p, Paint& paint) {
     p->add_option_function<std::string>(
          "--place",
          [&paint](const std::string& text) {
-             paint.place_mm = numbers(text, ',', 3, kFarthestMm);
-             if (paint.place_mm.empty())
+             paint.place.at_mm = numbers(text, ',', 3, kFarthestMm);
+             if (paint.place.at_mm.empty())
                  throw CLI::ValidationError("--place",
                                             "'" + excerpt(text) + "' is not X,Y,Z in millimetres, each within 10 km");
          },
          "where flat strokes go that have no place of their own: X,Y,Z in millimetres")
         ->type_name("X,Y,Z");
-    p->add_option("--on", paint.on,
+    p->add_option("--on", paint.place.on,
                   "puts flat strokes onto the largest calm area of a side, as by default onto the "
                   "front or what lies flat: "
                   "front (-y), back, left (-x), right, top, bottom, inside (of what is open above)")
@@ -163,12 +164,12 @@ void add_reader(CLI::App* p, Paint& paint) {
              const auto side = stroke::side_named(text);
              if (side && *side != stroke::Side::inside) {
                  const Vec3 from = -stroke::look_at_side(*side);
-                 paint.read_from = {from.x, from.y, from.z};
+                 paint.place.read_from = {from.x, from.y, from.z};
                  return;
              }
-             paint.read_from = numbers(text, ',', 3, 1e9);
-             if (paint.read_from.empty() ||
-                 std::hypot(paint.read_from[0], paint.read_from[1], paint.read_from[2]) < 1e-6)
+             paint.place.read_from = numbers(text, ',', 3, 1e9);
+             if (paint.place.read_from.empty() ||
+                 std::hypot(paint.place.read_from[0], paint.place.read_from[1], paint.place.read_from[2]) < 1e-6)
                  throw CLI::ValidationError("--read-from", "'" + text +
                                                                "' is neither front, back, left, right, top or "
                                                                "bottom nor a direction X,Y,Z");
@@ -183,32 +184,32 @@ void add_reader(CLI::App* p, Paint& paint) {
 /// How flat strokes are mapped onto the surface.
 void add_mapping(CLI::App* p, Paint& paint) {
     p->add_option(
-         "--mapping,--laying", paint.mapping,
+         "--mapping,--laying", paint.place.mapping,
          "how flat strokes lie: drape (bent round the surface, over its grooves, relief and gaps), wrap (along "
          "its triangles, into each groove), project (straight, as seen from before the place); default: as "
          "their file says, drape where it names no place")
         ->check(CLI::IsMember({"drape", "wrap", "project"}));
-    p->add_option("--place-width", paint.place_width_mm,
+    p->add_option("--place-width", paint.place.width_mm,
                   "draws what is placed this wide, all stroke files together (default: as written)")
         ->check(number_in(kLeastTexelMm, kFarthestMm, "POSITIVE"))
         ->type_name("MM");
     p->add_option(
-         "--snap", paint.snap,
+         "--snap", paint.place.snap,
          "moves the middle of the drawing into the middle plane of the model across this axis, such as that of "
          "its symmetry")
         ->check(CLI::IsMember({"x", "y", "z"}));
-    p->add_option("--place-turn", paint.place_turn_deg, "turns it anticlockwise by so many degrees")
+    p->add_option("--place-turn", paint.place.turn_deg, "turns it anticlockwise by so many degrees")
         ->check(number_in(-360.0, 360.0))
         ->type_name("DEG");
-    p->add_flag("--place-mirror", paint.place_mirror, "flips it from left to right");
+    p->add_flag("--place-mirror", paint.place.mirror, "flips it from left to right");
 }
 
 /// Files that are written.
 void add_outputs(CLI::App* p, Paint& paint) {
-    p->add_option("--project", paint.project, "write a project file (.tuft)");
-    p->add_option("--export", paint.exported, "write the textured model: .glb, .gltf or .obj");
-    p->add_option("--preview", paint.preview, "write a picture (.png)");
-    p->add_option("--forces", paint.forces,
+    p->add_option("--project", paint.output.project, "write a project file (.tuft)");
+    p->add_option("--export", paint.output.exported, "write the textured model: .glb, .gltf or .obj");
+    p->add_option("--preview", paint.output.preview, "write a picture (.png)");
+    p->add_option("--forces", paint.output.forces,
                   "write time, pose, force, force on the hand and moment at every sample of the hand (.csv)");
 }
 
@@ -223,7 +224,7 @@ void add_paint_options(CLI::App* p, Paint& paint) {
     add_reader(p, paint);
     add_mapping(p, paint);
     add_drawing_options(*p, paint);
-    p->add_flag("--fit-brush", paint.fit_brush,
+    p->add_flag("--fit-brush", paint.drawing.fit_brush,
                 "with --brush: takes this make in the sizes that draw the line widths of a drawing");
     add_surface(p, paint.surface);
     add_cache(p, paint.surface);

@@ -41,10 +41,10 @@ decal::SheetOptions sheet_options(const Decals& a, Console& console) {
     options.bleed = kMillimetre * a.bleed_mm;
     options.overlap = kMillimetre * a.overlap_mm;
     options.join = kMillimetre * a.join_mm;
-    options.page = kMillimetre * a.page_mm;
-    options.upright = a.grain == "up";
-    options.pixel = 0.0254 / a.dpi;
-    options.strain_map = a.strain_map;
+    options.page = kMillimetre * a.print.page_mm;
+    options.upright = a.print.grain == "up";
+    options.pixel = 0.0254 / a.print.dpi;
+    options.strain_map = a.print.strain_map;
     options.prints = format_of(a) != ".dxf";
     options.title = a.project.stem().string();
     options.progress = console.progress();
@@ -63,7 +63,8 @@ nlohmann::json piece_json(const decal::Piece& piece) {
 
 void check_request(const Decals& a) {
     check_extension(a.output, {".pdf", ".svg", ".dxf"});
-    if (a.plates && format_of(a) != ".pdf") throw UsageError("--plates: plates are separations, which only a .pdf has");
+    if (a.print.plates && format_of(a) != ".pdf")
+        throw UsageError("--plates: plates are separations, which only a .pdf has");
     check_output(a.output);
     if (a.guide.empty()) return;
     std::error_code ec;
@@ -108,10 +109,11 @@ int run(const Decals& a) {
     restore(*project, painting, console);
     show_layers(painting, a.layers);
     apply_recolouring(project->file, painting, a.recolouring, console);
-    const decal::Sheet sheet = io::make_painted_sheet(painting, {.mask = mask_of(a, painting),
-                                                                 .plates = a.plates,
-                                                                 .space = *ink::colour_space_named(a.colour_space),
-                                                                 .sheet = sheet_options(a, console)});
+    const decal::Sheet sheet =
+        io::make_painted_sheet(painting, {.mask = mask_of(a, painting),
+                                          .plates = a.print.plates,
+                                          .space = *ink::colour_space_named(a.print.colour_space),
+                                          .sheet = sheet_options(a, console)});
     std::vector<std::string> wrote;
     for (const auto& path : io::write_sheet(a.output, sheet)) wrote.push_back(path.string());
     if (!a.guide.empty())

@@ -51,7 +51,7 @@ stroke::Mask mask_of(const MaskWork& a, const stroke::MaskTable& table, const io
     is(!a.groups.empty(), stroke::MaskKind::group);
     is(!a.direction.empty(), stroke::MaskKind::angle);
     is(!a.chart_mm.empty(), stroke::MaskKind::chart);
-    is(!a.lasso.empty(), stroke::MaskKind::lasso);
+    is(!a.lasso.points.empty(), stroke::MaskKind::lasso);
     is(a.clear_mm > 0, stroke::MaskKind::clear);
     is(!a.invert.empty(), stroke::MaskKind::invert);
     is(!a.intersect.empty(), stroke::MaskKind::intersect);
@@ -66,10 +66,10 @@ stroke::Mask mask_of(const MaskWork& a, const stroke::MaskTable& table, const io
     mask.soft = a.soft * kDegree;
     if (a.clear_mm > 0) mask.distance = a.clear_mm * kMillimetre;
     if (!a.chart_mm.empty()) mask.points = {kMillimetre * vector_of(a.chart_mm)};
-    if (!a.lasso.empty()) {
-        mask.polygon = polygon_of(a.lasso);
-        mask.view = view_of(a.view, project.model().mesh.bounds.centre());
-        mask.view.through = a.through;
+    if (!a.lasso.points.empty()) {
+        mask.polygon = polygon_of(a.lasso.points);
+        mask.view = view_of(a.lasso.view, project.model().mesh.bounds.centre());
+        mask.view.through = a.lasso.through;
     }
     std::vector<std::string> of = a.intersect.empty() ? a.unite : a.intersect;
     if (!a.invert.empty()) of = {a.invert};

@@ -144,8 +144,8 @@ void note_misses(const std::vector<stroke::StrokeReport>& reports,
 
 void prepare_strokes(std::vector<stroke::JournalEntry>& strokes, stroke::Document& painting, const Paint& a,
                      Console& console) {
-    strokes = stroke::onto_named_layers(std::move(strokes), painting.layers().table(), a.layer);
-    stroke::keep_to_named_masks(strokes, painting.masks().table(), a.mask);
+    strokes = stroke::onto_named_layers(std::move(strokes), painting.layers().table(), a.stroke.layer);
+    stroke::keep_to_named_masks(strokes, painting.masks().table(), a.stroke.mask);
     keep_clear_of_edges(strokes, painting.masks().table(), a);
     // Files are numbered from 1: each is a group of its own in this journal.
     const std::uint64_t first_group = painting.journal().next_group_id();
@@ -175,10 +175,10 @@ std::optional<io::Project> output_project(const Paint& a, bool in_place, OpenPro
     if (in_place) {
         project = std::move(before->file);
         put_presets(*project, painting, strokes);
-    } else if (!a.project.empty()) {
+    } else if (!a.output.project.empty()) {
         std::vector<stroke::JournalEntry> all = painting.journal().entries();
         all.insert(all.end(), strokes.begin(), strokes.end());
-        project = start_project(a.project, before ? before->source : a.model.string(), frame, painting, all);
+        project = start_project(a.output.project, before ? before->source : a.model.string(), frame, painting, all);
         project->append(painting.journal().entries());
     }
     return project;
@@ -227,7 +227,7 @@ Painted paint_strokes(const std::vector<stroke::JournalEntry>& strokes, stroke::
     } catch (const Cancelled&) {
         commit_all();
         if (project)
-            console.note(fmt::format("{} holds the {} that {} finished", a.project.string(),
+            console.note(fmt::format("{} holds the {} that {} finished", a.output.project.string(),
                                      counted(project->n_strokes(), "stroke"),
                                      project->n_strokes() == 1 ? "was" : "were"));
         throw;
@@ -270,7 +270,7 @@ void print_painted(const Painted& painted, const stroke::Model& model, const Pai
     fmt::print("painted {}{} ({}, {:.1f} mm3 of ink) in {:.2f} s; atlas {} x {}, {}, texel {:.3f} mm\n", painted_areas,
                painted_strokes, counted(stamps, "stamp"), ink * ink::kFilmUnit * 1e9, seconds, model.atlas.size,
                model.atlas.size, counted(model.atlas.n_charts, "chart"), model.atlas.texel_size / kMillimetre);
-    for (const auto& path : {a.project, a.exported, a.preview, a.forces})
+    for (const auto& path : {a.output.project, a.output.exported, a.output.preview, a.output.forces})
         if (!path.empty()) fmt::print("wrote {}\n", path.string());
     std::fflush(stdout);
 }
@@ -307,27 +307,28 @@ int run(const Paint& a) {
     return paint(a, {.load = [&](Console& console) { return load_strokes(a, console); },
                      .place = [&](std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
                                   Console& console) -> std::optional<PlacedDrawing> {
-                         if (!a.along.empty()) return place_along(strokes, model, a, console);
+                         if (!a.copies.along.empty()) return place_along(strokes, model, a, console);
                          return place_strokes(strokes, model, a, console);
                      }});
 }
 
 int paint(const Paint& a, const StrokeSource& source) {
-    Outputs outputs{a.project, a.exported, a.preview, a.view, {}};
+    Outputs outputs{a.output.project, a.output.exported, a.output.preview, a.view, {}};
     check_outputs(outputs);
-    check_output(a.forces);
+    check_output(a.output.forces);
     Console console(a.common.quiet);
     const auto start = Clock::now();
 
     std::error_code no_matter;
     const bool goes_on = is_project_file(a.model);
-    const bool in_place = goes_on && (a.project.empty() || std::filesystem::equivalent(a.project, a.model, no_matter));
-    const auto reserved = in_place ? std::nullopt : reserve(a.project, console);
+    const bool in_place =
+        goes_on && (a.output.project.empty() || std::filesystem::equivalent(a.output.project, a.model, no_matter));
+    const auto reserved = in_place ? std::nullopt : reserve(a.output.project, console);
     const auto before =
         goes_on ? open_project(a.model, in_place ? io::Access::write : io::Access::read, console) : nullptr;
     std::vector<stroke::JournalEntry> strokes = source.load(console);
     Surface surface = a.surface;
-    if (const double texel = a.auto_texel ? texel_for_detail(strokes, a) : 0; texel > 0)
+    if (const double texel = a.drawing.auto_texel ? texel_for_detail(strokes, a) : 0; texel > 0)
         surface.texel_size_mm = texel / kMillimetre;
     Loaded loaded = before ? Loaded{std::move(before->model), before->frame} : load_model(a.model, surface, console);
     stroke::Model model = std::move(loaded.model);
@@ -345,7 +346,7 @@ int paint(const Paint& a, const StrokeSource& source) {
     visible.reset();
     strokes.insert(strokes.begin(), edits.begin(), edits.end());
 
-    stroke::Document painting(model, {.substrate = a.surface.substrate, .record_forces = !a.forces.empty()});
+    stroke::Document painting(model, {.substrate = a.surface.substrate, .record_forces = !a.output.forces.empty()});
     if (before) {
         restore(*before, painting, console);
         apply_recolouring(before->file, painting, {}, console);
@@ -362,7 +363,7 @@ int paint(const Paint& a, const StrokeSource& source) {
     note_inside(painted.reports, painted.done, model.mesh->bounds, console);
     show_layers(painting, a.view.layers);
     write_outputs(outputs, painting, console);
-    write_forces(painted.reports, a.forces);
+    write_forces(painted.reports, a.output.forces);
     console.clear();
     if (!a.common.json) return print_painted(painted, model, a), 0;
     nlohmann::json j = result_json(painted, strokes, painting, placed);

@@ -66,9 +66,9 @@ TextToWrite read_text(const Write& a) {
 double side_in_lines(const writer::Text& text, const stroke::Model& model, const Write& a) {
     if (a.size_mm > 0) return a.size_mm * kMillimetre;
     const Vec2 extent = writer::extent_of(text);
-    if (a.place_width_mm > 0) return a.place_width_mm * kMillimetre / extent.x;
-    if (a.place_mm.empty()) {
-        const stroke::Side side = stroke::side_named(a.on).value_or(stroke::usual_side(model.mesh->bounds));
+    if (a.place.width_mm > 0) return a.place.width_mm * kMillimetre / extent.x;
+    if (a.place.at_mm.empty()) {
+        const stroke::Side side = stroke::side_named(a.place.on).value_or(stroke::usual_side(model.mesh->bounds));
         if (const auto free = stroke::find_free_area(*model.query, side, extent.x / extent.y))
             return stroke::kUsualPart * std::min(free->size.x / extent.x, free->size.y / extent.y);
     }
@@ -101,7 +101,7 @@ std::optional<PlacedDrawing> write_in_lines(std::vector<stroke::JournalEntry>& s
     writer::append_lines(strokes, text, hand_of(a), console.progress());
     // The strokes have the size that their brush was fitted at: it stays.
     Write at = a;
-    at.place_width_mm = stroke::width_of(stroke::extent_of(stroke::drawing_in(strokes, false))) / kMillimetre;
+    at.place.width_mm = stroke::width_of(stroke::extent_of(stroke::drawing_in(strokes, false))) / kMillimetre;
     return place_strokes(strokes, model, at, console);
 }
 
@@ -117,14 +117,14 @@ std::optional<PlacedDrawing> write_along(std::vector<stroke::JournalEntry>& stro
     const PathOnModel on = text_path(model, a, text.layout.direction, console);
     const double whole = writer::length_of(text);
     double side = std::min(kPartOfPath * on.path.length() / whole, kPartOfHeight * model.mesh->bounds.diagonal());
-    if (a.place_width_mm > 0) side = a.place_width_mm * kMillimetre / whole;
+    if (a.place.width_mm > 0) side = a.place.width_mm * kMillimetre / whole;
     if (a.size_mm > 0) side = a.size_mm * kMillimetre;
     text.layout.side = side;
     note_size(text, a, console);
     writer::append_along(strokes, text, on.path, on.middle, hand_of(a), console.progress());
     Write placed = a;  // every character has its place
-    placed.place_mm.clear(), placed.on.clear();
-    placed.place_width_mm = 0;
+    placed.place.at_mm.clear(), placed.place.on.clear();
+    placed.place.width_mm = 0;
     return place_strokes(strokes, model, placed, console);
 }
 

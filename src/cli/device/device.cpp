@@ -37,7 +37,7 @@ haptic::ServerFault fault_named(const std::string& name) {
 }
 
 int list_devices(const DeviceWork& a) {
-    haptic::HaplyDevice device(haptic::device_preset(a.preset), {a.host, a.port});
+    haptic::HaplyDevice device(haptic::device_preset(a.arm.preset), {a.arm.host, a.arm.port});
     haptic::DeviceState state;
     bool answers = false;
     for (auto waited = 0ms; waited < 500ms && !answers; waited += kLook) {
@@ -54,7 +54,7 @@ int list_devices(const DeviceWork& a) {
                         {"coupling_n_per_m", d.coupling},
                         {"workspace_mm", {1e3 * d.workspace.x, 1e3 * d.workspace.y, 1e3 * d.workspace.z}}});
     }
-    const std::string where = fmt::format("{}:{}", a.host, a.port);
+    const std::string where = fmt::format("{}:{}", a.arm.host, a.arm.port);
     if (a.common.json) {
         nlohmann::json out{{"presets", arms}, {"service", where}, {"answers", answers}};
         if (answers) out["device_id"] = device.device_id();
@@ -75,14 +75,15 @@ int list_devices(const DeviceWork& a) {
 int simulate_device(const DeviceWork& a) {
     const ContactModel model = load_contact_model(a.model);
     const haptic::TrialPlace place = haptic::place_above(*model.surface, "");
-    haptic::SimulatedArm arm(haptic::device_preset(a.preset),
-                             haptic::hand_path(motion_named(a.motion), place, brush::load_preset(a.brush)),
-                             {.delay = 1e-3 * a.delay_ms});
+    haptic::SimulatedArm arm(haptic::device_preset(a.arm.preset),
+                             haptic::hand_path(motion_named(a.simulation.motion), place, brush::load_preset(a.brush)),
+                             {.delay = 1e-3 * a.simulation.delay_ms});
     haptic::serve_simulated(
-        std::move(arm), {.port = a.port, .fault = fault_named(a.fault), .fault_after = a.fault_after},
+        std::move(arm),
+        {.port = a.arm.port, .fault = fault_named(a.simulation.fault), .fault_after = a.simulation.fault_after},
         [] { return !interrupted(); },
         [&](int port) {
-            fmt::print("{} on 127.0.0.1:{}\n", a.preset, port);
+            fmt::print("{} on 127.0.0.1:{}\n", a.arm.preset, port);
             std::cout.flush();
         });
     return 0;
@@ -92,13 +93,13 @@ std::vector<haptic::RecordedPeriod> live_recording(const DeviceWork& a, const Co
                                                    const haptic::TrialPlace& place, const haptic::LawOptions& law) {
     const brush::Preset preset = brush::load_preset(a.brush);
     haptic::DeviceState state;
-    const auto path = haptic::hand_path(motion_named(a.motion), place, preset);
+    const auto path = haptic::hand_path(motion_named(a.simulation.motion), place, preset);
     const std::unique_ptr<haptic::Device> device = open_device(a, path, state);
     haptic::Loop loop(*device, haptic::HairSolver(brush::make_tuft(preset), *model.surface),
                       {.law = law, .record = true});
     haptic::ServoControl control;
     const Vec3 above = place.frame.origin + (preset.length + 0.01) * place.frame.n;
-    if (a.simulate.empty()) control.workspace = workspace_at(state, above);
+    if (a.arm.simulate.empty()) control.workspace = workspace_at(state, above);
     loop.set_control(control);
     loop.start();
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(a.seconds);
@@ -110,7 +111,7 @@ std::vector<haptic::RecordedPeriod> live_recording(const DeviceWork& a, const Co
 /// Of a recording: that of its first period.
 haptic::Workspace workspace_of(const std::vector<haptic::RecordedPeriod>& periods, const DeviceWork& a,
                                const Vec3& above) {
-    if (!a.simulate.empty()) return {};
+    if (!a.arm.simulate.empty()) return {};
     for (const haptic::RecordedPeriod& p : periods)
         if (p.fresh) return workspace_at(p.state, above);
     return {};
@@ -122,9 +123,10 @@ int record_device(const DeviceWork& a) {
     const ContactModel model = load_contact_model(a.model);
     const haptic::TrialPlace place = haptic::place_above(*model.surface, "");
     const brush::Preset preset = brush::load_preset(a.brush);
-    const haptic::LawOptions law{.limits = haptic::device_preset(a.simulate.empty() ? a.preset : a.simulate),
-                                 .gain = preset.force_gain,
-                                 .restore = a.restore};
+    const haptic::LawOptions law{
+        .limits = haptic::device_preset(a.arm.simulate.empty() ? a.arm.preset : a.arm.simulate),
+        .gain = preset.force_gain,
+        .restore = a.restore};
     const bool replays = !a.replay.empty();
     std::vector<haptic::RecordedPeriod> periods =
         replays ? haptic::read_recording(a.replay) : live_recording(a, model, place, law);
@@ -175,17 +177,17 @@ haptic::HandMotion motion_named(const std::string& name) {
 
 std::unique_ptr<haptic::Device> open_device(const DeviceWork& a, const haptic::HandPath& path,
                                             haptic::DeviceState& state) {
-    if (!a.simulate.empty())
+    if (!a.arm.simulate.empty())
         return std::make_unique<haptic::SimulatedDevice>(
-            haptic::SimulatedArm(haptic::device_preset(a.simulate), path, {.delay = 1e-3 * a.delay_ms}));
-    auto device =
-        std::make_unique<haptic::HaplyDevice>(haptic::device_preset(a.preset), haptic::HaplyAddress{a.host, a.port});
+            haptic::SimulatedArm(haptic::device_preset(a.arm.simulate), path, {.delay = 1e-3 * a.simulation.delay_ms}));
+    auto device = std::make_unique<haptic::HaplyDevice>(haptic::device_preset(a.arm.preset),
+                                                        haptic::HaplyAddress{a.arm.host, a.arm.port});
     for (auto waited = 0ms; waited < kStopPatience; waited += kLook) {
         check_interrupt();
         if (device->read(state)) return device;
         std::this_thread::sleep_for(kLook);
     }
-    throw Error(Message("{}:{}: no arm answers; start its service, or 'tuft device simulate'", a.host, a.port));
+    throw Error(Message("{}:{}: no arm answers; start its service, or 'tuft device simulate'", a.arm.host, a.arm.port));
 }
 
 haptic::Workspace workspace_at(const haptic::DeviceState& state, const Vec3& root) {

@@ -40,7 +40,7 @@ haptic::LoopStatus run_loop(const DeviceWork& a, const Places& places) {
     haptic::Loop loop(*device, haptic::HairSolver(brush::make_tuft(preset), *places.surface[0]),
                       {.law = law, .count_allocations = allocations_of_this_thread});
     haptic::ServoControl control;
-    if (a.simulate.empty()) {
+    if (a.arm.simulate.empty()) {
         const Frame& f = places.place[0].frame;
         control.workspace = workspace_at(state, f.origin + 1.0 * f.n);
     }
@@ -74,8 +74,8 @@ int test_device(const DeviceWork& a) {
     Console console(a.common.quiet);
     const Places places = places_of(a);
     nlohmann::json out;
-    if (!a.simulate.empty()) {
-        haptic::device_preset(a.simulate);
+    if (!a.arm.simulate.empty()) {
+        haptic::device_preset(a.arm.simulate);
         const Trials trials = run_trials(a, places, console);
         const haptic::TrialReport& worst = trials.worst;
         const std::vector<float>& solves = worst.seconds;

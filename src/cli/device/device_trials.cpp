@@ -67,7 +67,7 @@ std::string where_of(const std::string& brush, const haptic::TrialPlace& place, 
 
 std::vector<brush::Tuft> tufts_of(const DeviceWork& a) {
     std::vector<brush::Tuft> tufts;
-    for (const std::string& name : a.all_brushes ? brush::list_presets() : std::vector{a.brush})
+    for (const std::string& name : a.trial.all_brushes ? brush::list_presets() : std::vector{a.brush})
         tufts.push_back(brush::make_tuft(brush::load_preset(name)));
     return tufts;
 }
@@ -104,7 +104,7 @@ void try_hands(const DeviceWork& a, const Places& places, Console& console, Tria
             run_trial(tuft, *places.surface[p], haptic::hand_path(motion, places.place[p], tuft.preset, seed), options),
             fmt::format("{}, hand {}", where_of(tuft.preset.name, places.place[p], motion), hand)};
     };
-    run_all("hands", static_cast<std::size_t>(a.hands), trial, false, console, trials);
+    run_all("hands", static_cast<std::size_t>(a.trial.hands), trial, false, console, trials);
 }
 
 void try_hours(const DeviceWork& a, const Places& places, Console& console, Trials& trials) {
@@ -120,7 +120,7 @@ void try_hours(const DeviceWork& a, const Places& places, Console& console, Tria
                                haptic::hand_path(motion, places.place[p], tuft.preset, part + 1), options),
                      fmt::format("{}, minute {}", where_of(tuft.preset.name, places.place[p], motion), part)};
     };
-    run_all("hours", static_cast<std::size_t>(std::ceil(a.hours * 3600 / kPart)), trial, false, console, trials);
+    run_all("hours", static_cast<std::size_t>(std::ceil(a.trial.hours * 3600 / kPart)), trial, false, console, trials);
 }
 
 }  // namespace
@@ -144,12 +144,12 @@ Places places_of(const DeviceWork& a) {
 
 TrialOptions trial_options(const DeviceWork& a, const brush::Preset& preset) {
     TrialOptions options;
-    options.law = {.limits = haptic::device_preset(a.simulate),
+    options.law = {.limits = haptic::device_preset(a.arm.simulate),
                    .gain = preset.force_gain,
-                   .delay = 1e-3 * a.delay_ms,
+                   .delay = 1e-3 * a.simulation.delay_ms,
                    .restore = a.restore};
-    options.delay = 1e-3 * a.delay_ms;
-    options.jitter = a.delay_ms > 0 ? 5e-4 : 0;
+    options.delay = 1e-3 * a.simulation.delay_ms;
+    options.jitter = a.simulation.delay_ms > 0 ? 5e-4 : 0;
     return options;
 }
 

@@ -169,7 +169,7 @@ double texel_for_detail(std::vector<stroke::JournalEntry>& strokes, const Paint&
     Box extent = stroke::extent_of(stroke::drawing_in(strokes, true));
     for (const stroke::FlatArea* area : stroke::areas_in(strokes, true)) stroke::add_extent(extent, *area);
     const double width = stroke::width_of(extent);
-    const double scale = a.place_width_mm > 0 && width > 0 ? a.place_width_mm * kMillimetre / width : 1;
+    const double scale = a.place.width_mm > 0 && width > 0 ? a.place.width_mm * kMillimetre / width : 1;
     constexpr double kSpare = 1.02;  // the atlas meets the texel size within a percent
     return scale * finest / (kSpare * kTexelsAcross);
 }
@@ -184,12 +184,12 @@ void note_detail(std::vector<stroke::JournalEntry>& strokes, double texel, Conso
 }
 
 stroke::AreaEdges edges_of(const Paint& a) {
-    if (a.edges == "run-over") return stroke::AreaEdges::run_over;
-    return a.edges == "cut" || a.edges == "end-before" ? stroke::AreaEdges::cut : stroke::AreaEdges::facing;
+    if (a.place.edges == "run-over") return stroke::AreaEdges::run_over;
+    return a.place.edges == "cut" || a.place.edges == "end-before" ? stroke::AreaEdges::cut : stroke::AreaEdges::facing;
 }
 
 void keep_clear_of_edges(std::vector<stroke::JournalEntry>& strokes, const stroke::MaskTable& masks, const Paint& a) {
-    if (a.edges != "end-before") return;
+    if (a.place.edges != "end-before") return;
     std::vector<stroke::JournalEntry> edits;
     std::uint32_t next = masks.next_id;
     // The id of a mask like this one: that of the project where it has it, else of a new one.
@@ -203,9 +203,11 @@ void keep_clear_of_edges(std::vector<stroke::JournalEntry>& strokes, const strok
         edits.emplace_back(stroke::MaskEdit{.mask = mask});
         return mask.id;
     };
-    const std::string name = fmt::format("{:.3g} mm clear of edges", a.edge_margin_mm);
-    const std::uint32_t clear = id_of(
-        {.name = name, .kind = stroke::MaskKind::clear, .within = kSharp, .distance = a.edge_margin_mm * kMillimetre});
+    const std::string name = fmt::format("{:.3g} mm clear of edges", a.place.edge_margin_mm);
+    const std::uint32_t clear = id_of({.name = name,
+                                       .kind = stroke::MaskKind::clear,
+                                       .within = kSharp,
+                                       .distance = a.place.edge_margin_mm * kMillimetre});
     std::map<std::uint32_t, std::uint32_t> both{{0, clear}};
     const auto keep = [&](std::uint32_t& mask) {
         const auto [at, fresh] = both.try_emplace(mask, 0);
@@ -224,13 +226,13 @@ void keep_clear_of_edges(std::vector<stroke::JournalEntry>& strokes, const strok
 }
 
 void add_copies(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model, const Paint& a) {
-    stroke::Symmetry symmetry{.mirror_x = a.mirror.find('x') != std::string::npos,
-                              .mirror_y = a.mirror.find('y') != std::string::npos,
-                              .mirror_z = a.mirror.find('z') != std::string::npos,
-                              .radial = a.radial,
+    stroke::Symmetry symmetry{.mirror_x = a.copies.mirror.find('x') != std::string::npos,
+                              .mirror_y = a.copies.mirror.find('y') != std::string::npos,
+                              .mirror_z = a.copies.mirror.find('z') != std::string::npos,
+                              .radial = a.copies.radial,
                               .centre = model.mesh->bounds.centre()};
-    if (a.radial_axis == "x") symmetry.axis = {1, 0, 0};
-    if (a.radial_axis == "y") symmetry.axis = {0, 1, 0};
+    if (a.copies.radial_axis == "x") symmetry.axis = {1, 0, 0};
+    if (a.copies.radial_axis == "y") symmetry.axis = {0, 1, 0};
     if (!symmetry.any()) return;
     stroke::EntryGroup group{1, "copy"};
     for (const stroke::JournalEntry& s : strokes) {
@@ -239,7 +241,8 @@ void add_copies(std::vector<stroke::JournalEntry>& strokes, const stroke::Model&
     }
     if (group.name.size() > stroke::kMaxNameBytes) group.name = "copy";
     std::vector<stroke::JournalEntry> copies = stroke::symmetric_copies(
-        strokes, symmetry, a.readable ? stroke::CopyReading::upright_parts : stroke::CopyReading::mirrored, group);
+        strokes, symmetry, a.copies.readable ? stroke::CopyReading::upright_parts : stroke::CopyReading::mirrored,
+        group);
     strokes.insert(strokes.end(), std::make_move_iterator(copies.begin()), std::make_move_iterator(copies.end()));
 }
 

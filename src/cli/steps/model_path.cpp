@@ -29,12 +29,12 @@ struct Band {
 };
 
 Band band_of(double length, double width, const Paint& a) {
-    const double wanted = a.place_width_mm > 0 ? a.place_width_mm * kMillimetre : width;
-    Band band{.repeats = repeats_of(a.repeat), .scale = wanted / width};
+    const double wanted = a.place.width_mm > 0 ? a.place.width_mm * kMillimetre : width;
+    Band band{.repeats = repeats_of(a.copies.repeat), .scale = wanted / width};
     const bool fit = band.repeats == 0;
     if (fit) band.repeats = static_cast<int>(std::clamp(std::round(length / wanted), 1.0, double(kMostRepeats)));
     band.step = length / band.repeats;
-    if (fit || a.place_width_mm <= 0) band.scale = band.step / width;
+    if (fit || a.place.width_mm <= 0) band.scale = band.step / width;
     band.width = band.scale * width;
     return band;
 }
@@ -54,7 +54,7 @@ void place_copy(std::vector<stroke::JournalEntry>& copy, const Band& band, const
         {.origin = at.position, .right = at.right, .down = glm::cross(at.right, at.normal)},
         centre,
         band.scale,
-        a.place_mirror};
+        a.place.mirror};
     const std::vector<stroke::StrokeSamples*> drawing = stroke::drawing_in(copy, false);
     const std::vector<stroke::FlatArea*> areas = stroke::areas_in(copy, false);
     stroke::place_drawing(drawing, place);
@@ -77,8 +77,8 @@ void place_copy(std::vector<stroke::JournalEntry>& copy, const Band& band, const
 PathOnModel rim_path(const stroke::Model& model, const Paint& a) {
     const Box& box = model.mesh->bounds;
     Vec3 through = box.centre();
-    if (!a.place_mm.empty()) {
-        through = model.query->closest_point(kMillimetre * vector_of(a.place_mm))->position;
+    if (!a.place.at_mm.empty()) {
+        through = model.query->closest_point(kMillimetre * vector_of(a.place.at_mm))->position;
     } else {
         through.z = box.lo.z + kRimHeight * box.size().z;
         const Vec3 before(through.x, box.lo.y - box.diagonal(), through.z);
@@ -88,16 +88,16 @@ PathOnModel rim_path(const stroke::Model& model, const Paint& a) {
 }
 
 PathOnModel edge_path(const stroke::Model& model, const Paint& a) {
-    if (a.place_mm.empty()) throw UsageError("--along edge needs a point near the edge (see --place)");
-    return {writer::feature_line(*model.query, kMillimetre * vector_of(a.place_mm)), 0};
+    if (a.place.at_mm.empty()) throw UsageError("--along edge needs a point near the edge (see --place)");
+    return {writer::feature_line(*model.query, kMillimetre * vector_of(a.place.at_mm)), 0};
 }
 
 PathOnModel curve_path(const stroke::Model& model, const Paint& a, const std::filesystem::path& file,
                        Console& console) {
     Paint line = a;
     line.strokes = {file};
-    line.along.clear();
-    line.wide_lines_mm = 1e9;  // a line, not what it covers
+    line.copies.along.clear();
+    line.drawing.wide_lines_mm = 1e9;  // a line, not what it covers
     std::vector<stroke::JournalEntry> entries = load_strokes(line, console);
     place_strokes(entries, model, line, console);
     for (const stroke::JournalEntry& entry : entries)
@@ -130,16 +130,16 @@ int repeats_of(const std::string& text) {
 
 PlacedDrawing place_along(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model, const Paint& a,
                           Console& console) {
-    repeats_of(a.repeat);
+    repeats_of(a.copies.repeat);
     const std::vector<stroke::StrokeSamples*> drawing = stroke::drawing_in(strokes, false);
     const std::vector<stroke::FlatArea*> areas = stroke::areas_in(strokes, false);
     stroke::arrange_parts(drawing);
     Box extent = stroke::extent_of(drawing);
     for (const stroke::FlatArea* area : areas) stroke::add_extent(extent, *area);
     if (drawing.empty() && areas.empty()) throw UsageError("--along repeats a flat drawing without a place of its own");
-    const PathOnModel on = a.along == "rim"    ? rim_path(model, a)
-                           : a.along == "edge" ? edge_path(model, a)
-                                               : curve_path(model, a, a.along, console);
+    const PathOnModel on = a.copies.along == "rim"    ? rim_path(model, a)
+                           : a.copies.along == "edge" ? edge_path(model, a)
+                                                      : curve_path(model, a, a.copies.along, console);
     const double length = on.path.length(), width = stroke::width_of(extent);
     if (!(length > 0) || !(width > 0)) throw UsageError("--along needs a path and a drawing with a length");
     Band band = band_of(length, width, a);
@@ -157,8 +157,8 @@ PlacedDrawing place_along(std::vector<stroke::JournalEntry>& strokes, const stro
                              band.repeats, band.repeats == 1 ? "y" : "ies", length / kMillimetre,
                              band.step / kMillimetre, band.width / kMillimetre, width / kMillimetre));
     Paint placed = a;  // every copy has its place
-    placed.along.clear(), placed.place_mm.clear(), placed.on.clear();
-    placed.place_width_mm = 0, placed.place_mirror = false;
+    placed.copies.along.clear(), placed.place.at_mm.clear(), placed.place.on.clear();
+    placed.place.width_mm = 0, placed.place.mirror = false;
     place_strokes(strokes, model, placed, console);
     const writer::PathPlace first = writer::place_on(on.path, 0, kReach * band.step);
     return {.at = first.position,

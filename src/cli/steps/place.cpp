@@ -43,33 +43,33 @@ struct Spot {
 
 /// Its middle at a point that was named.
 Spot named_spot(const stroke::Model& model, const Paint& a, Console& console) {
-    const Vec3 place = kMillimetre * vector_of(a.place_mm);
+    const Vec3 place = kMillimetre * vector_of(a.place.at_mm);
     const auto at = model.query->closest_point(place);
     if (const double inside = contact::depth_inside(*model.query, place);
         inside > place_inside_noted(model.mesh->bounds))
         console.note(
             fmt::format("warning: --place {:.4g},{:.4g},{:.4g} lies {:.2f} mm inside the model; the drawing goes to "
                         "the nearest place of its surface, {:.1f},{:.1f},{:.1f} mm",
-                        a.place_mm[0], a.place_mm[1], a.place_mm[2], inside / kMillimetre, at->position.x / kMillimetre,
-                        at->position.y / kMillimetre, at->position.z / kMillimetre));
+                        a.place.at_mm[0], a.place.at_mm[1], a.place.at_mm[2], inside / kMillimetre,
+                        at->position.x / kMillimetre, at->position.y / kMillimetre, at->position.z / kMillimetre));
     else if (const double beside = glm::distance(place, Vec3(at->position));
              beside > stroke::kFarBeside * model.mesh->bounds.diagonal())
         console.note(
             fmt::format("warning: --place {:.4g},{:.4g},{:.4g} lies {:.1f} mm beside the model; the drawing goes to "
                         "the nearest place of its surface, {:.1f},{:.1f},{:.1f} mm",
-                        a.place_mm[0], a.place_mm[1], a.place_mm[2], beside / kMillimetre, at->position.x / kMillimetre,
-                        at->position.y / kMillimetre, at->position.z / kMillimetre));
+                        a.place.at_mm[0], a.place.at_mm[1], a.place.at_mm[2], beside / kMillimetre,
+                        at->position.x / kMillimetre, at->position.y / kMillimetre, at->position.z / kMillimetre));
     return {*at, at->normal};
 }
 
 /// On a side, and how large: where it is not said as it is written, if that suits the largest calm area, else as a part
 /// of it.
 Spot free_spot(const stroke::Model& model, const Paint& a, const Vec2& size, double& scale, PlacedDrawing& placed) {
-    const stroke::Side side = stroke::side_named(a.on).value_or(stroke::usual_side(model.mesh->bounds));
+    const stroke::Side side = stroke::side_named(a.place.on).value_or(stroke::usual_side(model.mesh->bounds));
     placed.side = stroke::side_name(side);
     const auto free = stroke::find_free_area(*model.query, side, std::max(size.x, 1e-9) / std::max(size.y, 1e-9));
     if (!free) {
-        if (!a.on.empty())
+        if (!a.place.on.empty())
             throw Error(fmt::format(
                 "{}: no calm area is found on its {}{}", a.model.string(), placed.side,
                 side == stroke::Side::inside ? " (the inside is looked for from above, within walls)" : ""));
@@ -81,7 +81,7 @@ Spot free_spot(const stroke::Model& model, const Paint& a, const Vec2& size, dou
     }
     placed.free = free->size;
     const auto part = [&] { return scale * std::max(size.x / free->size.x, size.y / free->size.y); };
-    if (a.place_width_mm <= 0 && part() > 0 && (part() > stroke::kMostPart || part() < stroke::kLeastPart))
+    if (a.place.width_mm <= 0 && part() > 0 && (part() > stroke::kMostPart || part() < stroke::kLeastPart))
         scale *= stroke::kUsualPart / part();
     placed.part = part();
     return {free->at, free->normal};
@@ -89,18 +89,18 @@ Spot free_spot(const stroke::Model& model, const Paint& a, const Vec2& size, dou
 
 /// In the middle plane of the model, near the spot.
 Spot snapped_spot(const stroke::Model& model, const Paint& a, const Spot& spot) {
-    if (a.snap.empty()) return spot;
+    if (a.place.snap.empty()) return spot;
     const Box& box = model.mesh->bounds;
-    const int axis = a.snap[0] - 'x';
-    if (const auto side = stroke::side_named(a.on); side && std::abs(stroke::look_at_side(*side)[axis]) > 0.5)
-        throw UsageError(
-            fmt::format("--snap {} puts the drawing beside the {} side, which --on asks for", a.snap, a.on));
+    const int axis = a.place.snap[0] - 'x';
+    if (const auto side = stroke::side_named(a.place.on); side && std::abs(stroke::look_at_side(*side)[axis]) > 0.5)
+        throw UsageError(fmt::format("--snap {} puts the drawing beside the {} side, which --on asks for", a.place.snap,
+                                     a.place.on));
     stroke::SnapPlane plane{.through = box.centre(), .normal = Vec3(0)};
     plane.normal[axis] = 1;
     const auto at = stroke::surface_point_in_plane(*model.query, spot.at.position, plane, box.diagonal());
     if (!at)
         throw Error(a.model.string(),
-                    Message("no surface near the place lies in the middle plane across {} (see --snap)", a.snap));
+                    Message("no surface near the place lies in the middle plane across {} (see --snap)", a.place.snap));
     return {*at, glm::dot(at->normal, spot.normal) < 0 ? -at->normal : at->normal};
 }
 
@@ -113,33 +113,33 @@ double scale_to(double wanted, double width) {
 
 /// Which way up it is read.
 stroke::Placement placement_at(const Spot& spot, const Paint& a, bool project) {
-    const double turn = a.place_turn_deg * kDegree;
-    if (a.read_from.empty()) return stroke::upright_placement(spot.at.position, spot.normal, turn);
-    const Vec3 from = vector_of(a.read_from);
+    const double turn = a.place.turn_deg * kDegree;
+    if (a.place.read_from.empty()) return stroke::upright_placement(spot.at.position, spot.normal, turn);
+    const Vec3 from = vector_of(a.place.read_from);
     return stroke::placement_seen(spot.at.position, project ? glm::normalize(from) : spot.normal,
                                   stroke::reading_right(from), turn);
 }
 
 void note_placed(const PlacedDrawing& p, const Paint& a, const Box& area, double scale, Console& console) {
     std::string line = fmt::format("{} the {} of the model, at {:.1f},{:.1f},{:.1f} mm",
-                                   a.on.empty() ? "the strokes name no place; they go to" : "the strokes go to", p.side,
-                                   p.at.x / kMillimetre, p.at.y / kMillimetre, p.at.z / kMillimetre);
+                                   a.place.on.empty() ? "the strokes name no place; they go to" : "the strokes go to",
+                                   p.side, p.at.x / kMillimetre, p.at.y / kMillimetre, p.at.z / kMillimetre);
     if (p.part > 0)
         line += fmt::format(", the middle of its largest calm area, {:.4g} x {:.4g} mm, of which they take {:.0f} %",
                             p.free.x / kMillimetre, p.free.y / kMillimetre, 100 * p.part);
     line += " (see --place, --on)";
-    if (scale != 1 && a.place_width_mm <= 0)
+    if (scale != 1 && a.place.width_mm <= 0)
         line +=
             fmt::format("; they are written {:.4g} mm wide and painted {:.4g} mm wide{} (see --place-width, --brush)",
                         area.size().x / kMillimetre, scale * area.size().x / kMillimetre,
-                        a.brush.empty() ? " with brushes of that scale" : "");
+                        a.stroke.brush.empty() ? " with brushes of that scale" : "");
     console.note(line);
 }
 
 std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
                                             const Paint& a, const stroke::BrushFit& fit, stroke::WidthTables& widths,
                                             Console& console) {
-    const auto mapping = stroke::surface_mapping_named(a.edges == "wrap" ? "wrap" : a.mapping);
+    const auto mapping = stroke::surface_mapping_named(a.place.edges == "wrap" ? "wrap" : a.place.mapping);
     for (stroke::FlatArea* area : stroke::areas_in(strokes, true)) {
         if (!area->placed) area->placement.mapping = stroke::SurfaceMapping::drape;
         if (mapping) area->placement.mapping = *mapping;
@@ -150,7 +150,7 @@ std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& s
         if (!s->trace.placed) s->trace.placement.mapping = stroke::SurfaceMapping::drape;
         if (mapping) s->trace.placement.mapping = *mapping;
     }
-    const bool all = !a.place_mm.empty() || !a.on.empty();
+    const bool all = !a.place.at_mm.empty() || !a.place.on.empty();
     const std::vector<stroke::StrokeSamples*> drawing = stroke::drawing_in(strokes, all);
     const std::vector<stroke::FlatArea*> areas = stroke::areas_in(strokes, all);
     if (drawing.empty() && areas.empty()) {
@@ -160,17 +160,17 @@ std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& s
     stroke::arrange_parts(drawing);
     Box area = stroke::extent_of(drawing);
     for (const stroke::FlatArea* part : areas) stroke::add_extent(area, *part);
-    const double turn = a.place_turn_deg * kDegree, width = stroke::width_of(area);
-    double scale = a.place_width_mm > 0 && width > 0 ? scale_to(a.place_width_mm * kMillimetre, width) : 1;
+    const double turn = a.place.turn_deg * kDegree, width = stroke::width_of(area);
+    double scale = a.place.width_mm > 0 && width > 0 ? scale_to(a.place.width_mm * kMillimetre, width) : 1;
     PlacedDrawing placed;
     const Vec2 size =
         std::abs(std::cos(turn)) * Vec2(area.size()) + std::abs(std::sin(turn)) * Vec2(area.size().y, area.size().x);
     const Spot spot = snapped_spot(
-        model, a, a.place_mm.empty() ? free_spot(model, a, size, scale, placed) : named_spot(model, a, console));
+        model, a, a.place.at_mm.empty() ? free_spot(model, a, size, scale, placed) : named_spot(model, a, console));
     placed.at = spot.at.position;
     placed.normal = spot.normal;
     placed.size = scale * Vec2(area.size());
-    if (a.place_mm.empty()) note_placed(placed, a, area, scale, console);
+    if (a.place.at_mm.empty()) note_placed(placed, a, area, scale, console);
     if (const double large = scale * std::max(area.size().x, area.size().y), whole = model.mesh->bounds.diagonal();
         large > kTooLarge * whole)
         console.note(
@@ -180,7 +180,7 @@ std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& s
     const stroke::SurfaceMapping first =
         drawing.empty() ? areas.front()->placement.mapping : drawing.front()->placement.mapping;
     const stroke::DrawingPlace place{placement_at(spot, a, first == stroke::SurfaceMapping::project),
-                                     Vec2(area.centre()), scale, a.place_mirror};
+                                     Vec2(area.centre()), scale, a.place.mirror};
     stroke::place_drawing(drawing, place);
     stroke::place_areas(areas, place);
     stroke::choose_brushes(strokes, drawing, scale, scale * std::max(area.size().x, area.size().y), fit, widths);
@@ -192,10 +192,10 @@ std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& s
 std::optional<PlacedDrawing> place_strokes(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
                                            const Paint& a, Console& console) {
     stroke::WidthTables widths;
-    const bool chosen = !a.brush.empty();
-    const stroke::BrushFit fit{.grow = !chosen, .fit = !chosen || a.fit_brush};
+    const bool chosen = !a.stroke.brush.empty();
+    const stroke::BrushFit fit{.grow = !chosen, .fit = !chosen || a.drawing.fit_brush};
     const std::optional<PlacedDrawing> placed = place_on_model(strokes, model, a, fit, widths, console);
-    stroke::fill_wide_lines(strokes, a.wide_lines_mm * kMillimetre, edges_of(a));
+    stroke::fill_wide_lines(strokes, a.drawing.wide_lines_mm * kMillimetre, edges_of(a));
     stroke::redip_long_lines(strokes, fit, widths);
     note_widths(stroke::press_to_widths(strokes, widths), fit.fit, console);
     return placed;

@@ -158,14 +158,15 @@ void check_extension(const fs::path& path, const std::vector<std::string>& allow
 namespace {
 
 io::SvgPainting painting_of(const Paint& a) {
-    if (a.areas == "mask") return io::SvgPainting::areas;
-    const bool one_ink = !a.ink.empty() || !a.brush.empty() || a.erases;
-    return a.areas == "brush" || one_ink ? io::SvgPainting::brush : io::SvgPainting::automatic;
+    if (a.drawing.areas == "mask") return io::SvgPainting::areas;
+    const bool one_ink = !a.stroke.ink.empty() || !a.stroke.brush.empty() || a.stroke.erases;
+    return a.drawing.areas == "brush" || one_ink ? io::SvgPainting::brush : io::SvgPainting::automatic;
 }
 
 // A brush that was chosen, or prepared, paints every line itself.
 bool fills_wide_lines(const Paint& a) {
-    return a.areas.empty() && a.brush.empty() && !a.erases && a.prepare.empty() && a.film == "still";
+    return a.drawing.areas.empty() && a.stroke.brush.empty() && !a.stroke.erases && a.stroke.prepare.empty() &&
+           a.wet.film == "still";
 }
 
 // The file is a group, and so is each layer and named group in it.
@@ -194,30 +195,30 @@ void use_ink(stroke::JournalEntry& entry, const std::string& ink) {
 
 stroke::EntryOptions entry_options(const Paint& a) {
     stroke::StrokeSettings settings;
-    settings.spine = stroke::spine_method_of(a.spine);
-    settings.footprint = stroke::footprint_mapping_of(a.footprint);
-    settings.contact = stroke::contact_method_of(a.contact);
-    settings.endless = a.dip == "endless";
-    settings.dip = settings.endless ? stroke::DipMode::each : stroke::dip_mode_of(a.dip);
-    settings.smooth = a.smooth;
-    settings.stabilise = a.stabilise_mm * kMillimetre;
-    settings.roll = a.roll_deg * kDegree;
-    settings.roll_follow = a.roll_follow;
-    settings.film = stroke::film_model_of(a.film);
-    settings.down = {a.down[0], a.down[1], a.down[2]};
+    settings.spine = stroke::spine_method_of(a.stroke.spine);
+    settings.footprint = stroke::footprint_mapping_of(a.stroke.footprint);
+    settings.contact = stroke::contact_method_of(a.stroke.contact);
+    settings.endless = a.stroke.dip == "endless";
+    settings.dip = settings.endless ? stroke::DipMode::each : stroke::dip_mode_of(a.stroke.dip);
+    settings.smooth = a.hand.smooth;
+    settings.stabilise = a.hand.stabilise_mm * kMillimetre;
+    settings.roll = a.hand.roll_deg * kDegree;
+    settings.roll_follow = a.hand.roll_follow;
+    settings.film = stroke::film_model_of(a.wet.film);
+    settings.down = {a.wet.down[0], a.wet.down[1], a.wet.down[2]};
     stroke::EntryOptions options{.settings = settings,
-                                 .brush = a.brush,
-                                 .ink = a.ink,
-                                 .pressure = stroke::pressure_from(a.pressure),
-                                 .erases = a.erases};
-    for (const std::string& text : a.prepare) options.prepare.push_back(stroke::preparation_of(text));
+                                 .brush = a.stroke.brush,
+                                 .ink = a.stroke.ink,
+                                 .pressure = stroke::pressure_from(a.hand.pressure),
+                                 .erases = a.stroke.erases};
+    for (const std::string& text : a.stroke.prepare) options.prepare.push_back(stroke::preparation_of(text));
     return options;
 }
 
 std::vector<stroke::JournalEntry> load_strokes(const Paint& a, Console& console) {
     const stroke::EntryOptions options = entry_options(a);
     std::optional<stroke::BiasCorrection> bias;
-    if (!a.bias.empty()) bias = stroke::load_bias(a.bias);
+    if (!a.hand.bias.empty()) bias = stroke::load_bias(a.hand.bias);
 
     std::vector<stroke::JournalEntry> strokes;
     std::uint64_t n_groups = 0;
@@ -229,19 +230,20 @@ std::vector<stroke::JournalEntry> load_strokes(const Paint& a, Console& console)
                                            if (reported.insert(text).second) console.note(text);
                                        }};
         std::vector<stroke::RecordedStroke> traces = io::read_strokes(
-            file, io::SvgOptions{
-                      .painting = painting_of(a), .groups = a.only, .outlines = fills_wide_lines(a), .ink = reading});
+            file,
+            io::SvgOptions{
+                .painting = painting_of(a), .groups = a.drawing.only, .outlines = fills_wide_lines(a), .ink = reading});
         if (bias) traces = stroke::correct_bias(*bias, std::move(traces));
         for (stroke::RecordedStroke& trace : traces)
             for (stroke::Preparation& one : trace.before)
                 if (auto* fill = std::get_if<stroke::Fill>(&one); fill && fill->area)
-                    if (!a.edges.empty() || !fill->area->placed) fill->area->edges = edges_of(a);
+                    if (!a.place.edges.empty() || !fill->area->placed) fill->area->edges = edges_of(a);
         stroke::append_entries(strokes, std::move(traces), options);
         number_groups(std::span(strokes).subspan(first), file, n_groups);
-        if (!a.ink.empty())
-            for (std::size_t i = first; i < strokes.size(); ++i) use_ink(strokes[i], a.ink);
-        if (a.dry >= 0 && !strokes.empty())
-            strokes.emplace_back(stroke::Dry{.seconds = a.dry, .down = options.settings.down});
+        if (!a.stroke.ink.empty())
+            for (std::size_t i = first; i < strokes.size(); ++i) use_ink(strokes[i], a.stroke.ink);
+        if (a.wet.dry >= 0 && !strokes.empty())
+            strokes.emplace_back(stroke::Dry{.seconds = a.wet.dry, .down = options.settings.down});
         report(console.progress(), "strokes", 1);
     }
     return strokes;
