@@ -146,22 +146,20 @@ int main() {
         }
         Geometry g;
         fill(g, 50 * round + (round & 1));
-        const Step step{.flow = 0.02f,
-                        .levelling = 0.01f,
-                        .limit = 0.06f,
-                        .most = round & 16 ? 0.02f * kFlowAreaUnit : 0.0f,
-                        .most_of_link = 0.03f,
-                        .threshold = 0.1f,
-                        .pin = 1,
-                        .mixing = 0.02f,
-                        .grip = 0.5f,
-                        .pores = round & 4 ? 3.0f : 0.0f,
-                        .passing = round & 8 ? 0.2f : 1.0f,
-                        .evaporation = 0.004f,
-                        .rim = 0.002f,
-                        .retained = 1,
-                        .relief = 0.015f,
-                        .ridge = 0.4f};
+        const Step step{
+            .flow = 0.02f,
+            .levelling = 0.01f,
+            .limit = {.flow = 0.06f, .most = round & 16 ? 0.02f * kFlowAreaUnit : 0.0f, .most_of_link = 0.03f},
+            .threshold = 0.1f,
+            .pin = 1,
+            .mixing = 0.02f,
+            .grip = 0.5f,
+            .pores = round & 4 ? 3.0f : 0.0f,
+            .passing = round & 8 ? 0.2f : 1.0f,
+            .drying = {.evaporation = 0.004f, .rim = 0.002f},
+            .retained = 1,
+            .relief = 0.015f,
+            .ridge = 0.4f};
         Work work;
         gather_field(work.w, w_at);
         gather_field(work.s, s_at);
@@ -169,7 +167,7 @@ int main() {
         gather_field(work.z, z_at);
         work.on_relief = round % 3 == 2;
         fluxes(work, g, step);
-        if (step.most > 0) {
+        if (step.limit.most > 0) {
             Beside beside{.blocks = {0xffff, 0xffff, 0xffff, 0xffff}, .here = g.blocks};
             beside.liquid = {w_at[3], w_at[5], w_at[1], w_at[7]};
             film_block_flow(work, g, beside, step);

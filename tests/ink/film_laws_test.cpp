@@ -16,7 +16,7 @@ namespace {
 /// Level porcelain in air that is saturated.
 FilmParams level_porcelain() {
     FilmParams p = film_params(load_substrate("porcelain"), {0, 0, -1});
-    p.evaporation = p.rim_evaporation = 0;
+    p.drying.evaporation = p.drying.rim_evaporation = 0;
     return p;
 }
 
@@ -41,7 +41,7 @@ double ripple_rate(double h, double lambda, double seconds, const FilmParams& p,
 }
 double orchard(double h, double lambda, const FilmParams& p) {
     const double k = 2 * std::numbers::pi / lambda;
-    return p.tension * std::pow(h * kFilmUnit, 3) * std::pow(k, 4) / (3 * p.viscosity);
+    return p.ripples.tension * std::pow(h * kFilmUnit, 3) * std::pow(k, 4) / (3 * p.ripples.viscosity);
 }
 
 TEST(FilmLaws, RipplesLevelAsThinFilmTheorySays) {
@@ -63,7 +63,7 @@ TEST(FilmLaws, RipplesLevelAsThinFilmTheorySays) {
 TEST(FilmLaws, SoThinAFilmIsHeld) {
     FilmParams p = level_porcelain();
     p.mobility = 0;
-    EXPECT_NEAR(ripple_rate(0.9 * p.held, 1e-3, 5, p), 0, 1e-9);
+    EXPECT_NEAR(ripple_rate(0.9 * p.ripples.held, 1e-3, 5, p), 0, 1e-9);
 }
 
 TEST(FilmLaws, AFilmKeepsItsEdgeWhileItsRidgesLevel) {
@@ -99,7 +99,7 @@ TEST(FilmLaws, LevellingKeepsAllAndIsTheSameOnAnyNumberOfThreads) {
         s.wet([](const Vec3& at) { return 2.5 + 2.1 * std::sin(1500 * at.x) * std::sin(1100 * (at.y + at.z)); });
         s.ink(0, [](const Vec3& at) { return 1 + std::cos(900 * at.y); });
         FilmParams p = level_porcelain();
-        p.down = Vec3{0};  // all round the ball
+        p.weight.down = Vec3{0};  // all round the ball
         p.levelling = 0;
         const auto unevenness = [&] {
             double square = 0, n = 0;
@@ -147,7 +147,7 @@ double front_along_x(const Wet& s, double edge, const FilmParams& p) {
     double supplied = -1;
     s.each([&](std::uint32_t slot, int t, const Vec3& at) {
         auto& c = columns[std::lround(at.x / s.map.texel_size * 2)];
-        c[0] += s.water(slot, t, Liquid::pores) / p.pores, c[1] += 1, c[2] = at.x;
+        c[0] += s.water(slot, t, Liquid::pores) / p.pores.capacity, c[1] += 1, c[2] = at.x;
         if (at.x < edge) supplied = std::max(supplied, at.x);
     });
     double before = 1, x = supplied;
@@ -165,10 +165,10 @@ double front_along_x(const Wet& s, double edge, const FilmParams& p) {
 TEST(FilmLaws, AFrontInPaperGoesWithTheRootOfTime) {
     const Substrate paper = load_substrate("rice-paper");
     const FilmParams p = even_paper();
-    const double k =
-        washburn(static_cast<double>(paper.pore_radius),
-                 static_cast<double>(paper.contact_angle) * std::numbers::pi / 180, p.tension, p.viscosity);
-    EXPECT_FLOAT_EQ(static_cast<float>(p.suction), static_cast<float>(k));
+    const double k = washburn(static_cast<double>(paper.wetting.pore_radius),
+                              static_cast<double>(paper.wetting.contact_angle) * std::numbers::pi / 180,
+                              p.ripples.tension, p.ripples.viscosity);
+    EXPECT_FLOAT_EQ(static_cast<float>(p.pores.suction), static_cast<float>(k));
     for (const double texel : {0.05e-3, 0.1e-3}) {
         const double side = 160 * texel, edge = -0.45 * side, last = std::pow(0.85 * side, 2) / k;
         Wet s(testing::sheet(side, 1, 160));
@@ -198,12 +198,13 @@ TEST(FilmLaws, ADropSoaksIntoPaperAsMarmurSays) {
     s.wet([&](const Vec3& at) { return glm::length(at) < a ? 1e3 : 0; });
     double t = 0;
     for (const double ratio : {1.5, 2.0, 3.0, 4.0}) {
-        const double r = ratio * a, until = (r * r * (2 * std::log(ratio) - 1) + a * a) / (2 * p.suction);
+        const double r = ratio * a, until = (r * r * (2 * std::log(ratio) - 1) + a * a) / (2 * p.pores.suction);
         s.film.advance(s.canvas, until - t, p);
         t = until;
         double area = 0;
         s.each([&](std::uint32_t slot, int i, const Vec3&) {
-            if (s.water(slot, i, Liquid::pores) > 0.2 * p.pores) area += static_cast<double>(s.map.tiles[slot].area[i]);
+            if (s.water(slot, i, Liquid::pores) > 0.2 * p.pores.capacity)
+                area += static_cast<double>(s.map.tiles[slot].area[i]);
         });
         EXPECT_NEAR(std::sqrt(area / std::numbers::pi) / r, 1, 0.05) << ratio;
     }
@@ -213,17 +214,17 @@ TEST(FilmLaws, ADropSoaksIntoPaperAsMarmurSays) {
 // areas that Gillespie (1958) and Kissa (1981) measured, V^⅔ (σ t / η)^⅓, and Barenblatt's solution with that volume.
 TEST(FilmLaws, ADropOnPaperSpreadsAsItsVolumeAndTheRootOfTimeSay) {
     const FilmParams p = even_paper();
-    const double diffusion = p.suction / std::pow(similar_wicking().front, 2);
+    const double diffusion = p.pores.suction / std::pow(similar_wicking().front, 2);
     std::vector<double> radii;
     for (const double drops : {1.0, 3.0}) {
         Wet s(testing::sheet(0.024, 1, 110));
-        s.wet([&](const Vec3& at) { return glm::length(at) < 0.9e-3 ? 3 * drops * p.pores : 0; });
-        const double water = s.canvas.total_liquid(s.map), full = water / (p.pores * std::numbers::pi);
+        s.wet([&](const Vec3& at) { return glm::length(at) < 0.9e-3 ? 3 * drops * p.pores.capacity : 0; });
+        const double water = s.canvas.total_liquid(s.map), full = water / (p.pores.capacity * std::numbers::pi);
         for (const double until : {400.0, 1000.0}) {
             s.film.advance(s.canvas, until - (until > 400 ? 400 : 0), p);
             double area = 0;
             s.each([&](std::uint32_t slot, int i, const Vec3&) {
-                if (s.water(slot, i, Liquid::pores) > 0.02 * p.pores)
+                if (s.water(slot, i, Liquid::pores) > 0.02 * p.pores.capacity)
                     area += static_cast<double>(s.map.tiles[slot].area[i]);
             });
             radii.push_back(std::sqrt(area / std::numbers::pi));

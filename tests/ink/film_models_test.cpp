@@ -33,10 +33,10 @@ TEST(WetFilm, UniformWaterStaysUniformOverEverySeamOfEveryModel) {
             canvas.touch(slot, 0)[t] = 0.7f;
         });
         FilmParams p;
-        p.threshold = p.pin = p.evaporation = p.shortest_step = 0;
+        p.threshold = p.pin = p.drying.evaporation = p.shortest_step = 0;
         p.mobility = 1e-8;
         p.mixing = 1e-9;
-        p.pores = 5;
+        p.pores.capacity = 5;
         film.advance(canvas, 5, p);
         double water = 0, ink = 0;
         each([&](std::uint32_t slot, int t) {

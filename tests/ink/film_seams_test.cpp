@@ -36,8 +36,8 @@ testing::Unwrapped two_charts(const Lie& left, const Lie& right) {
 Wet blot_on(testing::Unwrapped sheet, double shortest_step = 0) {
     Wet s(std::move(sheet));
     FilmParams p = film_params(load_substrate("bisque"));
-    p.unevenness = 0;  // crinkles of some texels would show where texels lie, not the seam
-    p.tension = 0;     // for that: film_laws_test.cpp
+    p.unevenness = 0;       // crinkles of some texels would show where texels lie, not the seam
+    p.ripples.tension = 0;  // for that: film_laws_test.cpp
     p.shortest_step = shortest_step;
     const auto centred = [](const Vec3& at) { return disc(at - Vec3{0.7e-3, 0.2e-3, 0}, 3e-3, 3e-3); };
     s.wet([&](const Vec3& at) { return 4 * centred(at); });
@@ -140,7 +140,7 @@ struct Stroke {
         : wet(testing::sheet(0.01, charts, 200)) {
         FilmParams p = film_params(load_substrate("rice-paper"));
         p.shortest_step = shortest_step;
-        p.tension = 0;
+        p.ripples.tension = 0;
         const auto stroke = [](const Vec3& at) { return disc({at.x, 0.5 * at.y, 0}, 1.5e-3, 0.1e-3); };
         wet.wet([&](const Vec3& at) { return 3.5 * stroke(at); });
         wet.ink(0, [&](const Vec3& at) { return 2 * stroke(at); });
@@ -215,7 +215,7 @@ TEST(WetFilm, ABlotIsTheSameOverRandomSeams) {
 Wet ridges_on(testing::Unwrapped sheet) {
     Wet s(std::move(sheet));
     FilmParams p = film_params(load_substrate("porcelain"), {0, 0, -1});
-    p.evaporation = p.rim_evaporation = 0;
+    p.drying.evaporation = p.drying.rim_evaporation = 0;
     const auto film = [&](const Vec3& at) {
         return 1.6 + 0.5 * std::sin(1200 * at.x + 500 * at.y) * std::cos(900 * at.y) + 0.3 * disc(at, 3e-3, 1e-3);
     };

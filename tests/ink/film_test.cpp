@@ -135,8 +135,8 @@ double barenblatt(const Vec3& at, double tau) {
 /// Pores through which liquid flows so that τ = 0.1 passes in a second. u is saturation.
 FilmParams seeping() {
     FilmParams p = still();
-    p.pores = 100;
-    p.suction = 3 * 0.1e-6 * 1.0903204 * 1.0903204;  // u³ / 3
+    p.pores.capacity = 100;
+    p.pores.suction = 3 * 0.1e-6 * 1.0903204 * 1.0903204;  // u³ / 3
     return p;
 }
 
@@ -145,12 +145,12 @@ TEST(WetFilm, LiquidInPoresSpreadsAsBarenblattsSolution) {
         Wet s(testing::sheet(0.012, charts, 120 / charts));
         const FilmParams p = seeping();
         const double from = 1, to = 8;
-        s.wet([&](const Vec3& at) { return p.pores * barenblatt(at, from); }, Liquid::pores);
+        s.wet([&](const Vec3& at) { return p.pores.capacity * barenblatt(at, from); }, Liquid::pores);
         const double before = s.canvas.total_liquid(s.map);
         s.film.advance(s.canvas, (to - from) / 0.1, p);
         double sum = 0, square = 0, worst = 0;
         s.each([&](std::uint32_t slot, int t, const Vec3& at) {
-            const double e = std::abs(s.water(slot, t, Liquid::pores) / p.pores - barenblatt(at, to));
+            const double e = std::abs(s.water(slot, t, Liquid::pores) / p.pores.capacity - barenblatt(at, to));
             sum += barenblatt(at, to), square += e;
             if (barenblatt(at, to) > 0.5 * barenblatt(Vec3{0}, to)) worst = std::max(worst, e);
         });
@@ -171,9 +171,9 @@ TEST(WetFilm, FibresHoldGrainsBackFromWhatSeeps) {
          {Case{0, 0, 1e3}, Case{0.5, 0.5, 1e3}, Case{1, 1, 1e3}, Case{1, 0, 1e-3}}) {
         Wet s(testing::sheet(0.012, 1, 120));
         FilmParams p = seeping();
-        p.retention = retention;
+        p.pores.retention = retention;
         const double from = 1, to = 10, growth = std::pow(to / from, 1.0 / 6);
-        s.wet([&](const Vec3& at) { return p.pores * barenblatt(at, from); }, Liquid::pores);
+        s.wet([&](const Vec3& at) { return p.pores.capacity * barenblatt(at, from); }, Liquid::pores);
         s.ink(0, [&, factor = strength](const Vec3& at) { return factor * barenblatt(at, from); });
         const auto radius = [&] {
             double sum = 0, square = 0;
@@ -232,7 +232,7 @@ TEST(WetFilm, UniformWaterStaysUniformOverEverySeam) {
     FilmParams p = still();
     p.mobility = 1e-8;
     p.mixing = 1e-9;
-    p.pores = 5;
+    p.pores.capacity = 5;
     s.wet([](const Vec3&) { return 2.0; });
     s.ink(0, [](const Vec3&) { return 0.7; });
     s.film.advance(s.canvas, 20, p);
@@ -282,7 +282,7 @@ TEST(WetFilm, TenThousandStepsDriftByLessThanTheirRounding) {
         s.canvas.touch(slot, 0)[t] = static_cast<float>(1 + std::cos(700 * p.y));
     });
     FilmParams p = everything();
-    p.evaporation = p.rim_evaporation = 0;
+    p.drying.evaporation = p.drying.rim_evaporation = 0;
     const double ink = s.canvas.total(s.map, 0), water = s.canvas.total_liquid(s.map);
     std::size_t steps = 0;
     while (steps < 10000) steps += s.film.advance(s.canvas, 10, p).steps;
@@ -295,7 +295,7 @@ TEST(WetFilm, PoresNeverHoldMoreThanTheirCapacityAndNothingGetsNegative) {
         Wet s(testing::sphere(0.01, 48));
         FilmParams p = film_params(load_substrate("rice-paper"), {0, 0, -1});
         p.mobility = 2e-8;
-        p.pores = 1.2;
+        p.pores.capacity = 1.2;
         p.retained = 0;
         p.shortest_step = shortest;
         blot(s);
@@ -340,16 +340,16 @@ std::vector<double> halvings(const FilmParams& p, int n) {
 
 TEST(WetFilm, HalvingTheStepHalvesTheError) {
     FilmParams p = film_params(load_substrate("bisque"));
-    p.unevenness = 0;  // its easiest place would set the steps
-    p.tension = 0;     // it is implicit: what it levels faster than a step lasts is not followed
+    p.unevenness = 0;       // its easiest place would set the steps
+    p.ripples.tension = 0;  // it is implicit: what it levels faster than a step lasts is not followed
     p.mobility = 1e-9;
     // Texels get wet and dry at times that fall to either side of a step: convergence in the mean.
     const std::vector<double> all = halvings(p, 4);
     EXPECT_LT(all[3], all[0] / 2);
     EXPECT_LT(all[0], 4e-4) << "film units, of 3: at fronts, whose slope is vertical";
     p.pin = 1e6;
-    p.evaporation = p.rim_evaporation = 0;
-    p.pores = p.absorbency = 0;  // a step in the pores has now one stage more, now one less
+    p.drying.evaporation = p.drying.rim_evaporation = 0;
+    p.pores.capacity = p.pores.absorbency = 0;  // a step in the pores has now one stage more, now one less
     const std::vector<double> smooth = halvings(p, 4);
     EXPECT_NEAR(smooth[2] / smooth[3], 2, 0.1) << "first order in time";
 }
@@ -392,7 +392,7 @@ TEST(WetFilm, ADryingSpotHasADarkRim) {
     s.wet([](const Vec3& at) { return 3 * disc(at, 3e-3); });
     s.ink(0, [](const Vec3& at) { return disc(at, 3e-3); });
     FilmParams p = film_params(load_substrate("bisque"));
-    p.pores = p.absorbency = p.stain = 0;
+    p.pores.capacity = p.pores.absorbency = p.drying.stain = 0;
     s.film.dry(s.canvas, p);
     double middle = 0, rim = 0;
     s.each([&](std::uint32_t slot, int t, const Vec3& at) {
@@ -410,7 +410,7 @@ TEST(WetFilm, CleanWaterPushesInkAway) {
     s.ink(0, [](const Vec3&) { return 1.0; });
     s.wet([](const Vec3& at) { return 0.8 + 5 * disc(at, 1.5e-3); });
     FilmParams p = film_params(load_substrate("bisque"));
-    p.pores = p.absorbency = 0;
+    p.pores.capacity = p.pores.absorbency = 0;
     const double before = s.canvas.total(s.map, 0);
     for (const bool dry : {false, true}) {
         if (dry)

@@ -51,7 +51,7 @@ struct BaseColour : Wet {
     static double ridge(double x) { return std::abs(2 * (x / kWave - std::floor(x / kWave)) - 1); }
     void run(double seconds) {
         FilmParams p = film_params(load_substrate("porcelain"));
-        p.evaporation = p.rim_evaporation = 0;
+        p.drying.evaporation = p.drying.rim_evaporation = 0;
         film.advance(canvas, seconds, p);
     }
 };

@@ -79,18 +79,18 @@ TEST(Presets, SubstratesDifferAsTheirMaterialsDo) {
     EXPECT_FLOAT_EQ(glaze.relief, 1e-6f);
     EXPECT_FLOAT_EQ(bisque.relief, 8e-6f);
     EXPECT_FLOAT_EQ(paper.relief, 15e-6f);
-    EXPECT_FLOAT_EQ(glaze.diffusion, 1e-10f);
-    EXPECT_FLOAT_EQ(bisque.diffusion, 1e-8f);
-    EXPECT_FLOAT_EQ(paper.diffusion, 1e-8f);
-    EXPECT_EQ(glaze.absorbency, 0) << "nothing soaks into a glaze";
-    EXPECT_LT(bisque.absorbency, paper.absorbency);
-    EXPECT_LT(bisque.retention, paper.retention) << "fibres sieve";
+    EXPECT_FLOAT_EQ(glaze.wetting.diffusion, 1e-10f);
+    EXPECT_FLOAT_EQ(bisque.wetting.diffusion, 1e-8f);
+    EXPECT_FLOAT_EQ(paper.wetting.diffusion, 1e-8f);
+    EXPECT_EQ(glaze.wetting.absorbency, 0) << "nothing soaks into a glaze";
+    EXPECT_LT(bisque.wetting.absorbency, paper.wetting.absorbency);
+    EXPECT_LT(bisque.wetting.retention, paper.wetting.retention) << "fibres sieve";
     EXPECT_EQ(glaze.interface, 1);
     EXPECT_EQ(paper.interface, 0);
     // A file from before these fields keeps its meaning: a matte surface.
     const Substrate old = parse_substrate("reflectance = [0.5, 0.5, 0.5]\ncapacity = 7\n", "old");
     EXPECT_EQ(old.interface, 0);
-    EXPECT_EQ(old.retention, 0);
+    EXPECT_EQ(old.wetting.retention, 0);
     EXPECT_EQ(old.capacity, 7);
 }
 

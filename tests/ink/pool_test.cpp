@@ -173,7 +173,7 @@ TEST(Pool, LeavesASmoothSubstrateAsItIsPainted) {
 /// Lets 2 film units of liquid that carry the ink run for `seconds` without drying; steps of `shortest` at least.
 FilmParams wash(const Vec3& down = Vec3{0}) {
     FilmParams p = film_params(load_substrate("porcelain"), down);
-    p.evaporation = p.rim_evaporation = 0;
+    p.drying.evaporation = p.drying.rim_evaporation = 0;
     return p;
 }
 void run_wet(Furrowed& f, double seconds, const FilmParams& p) {

@@ -20,7 +20,7 @@ std::array<double, 16> radii(const Wet& s, const FilmParams& p) {
     s.each([&](std::uint32_t slot, int t, const Vec3& at) {
         if (saturation.empty()) first = at;
         const Vec3 cell = (at - first) / texel;
-        saturation[{std::lround(cell.x), std::lround(cell.y)}] = s.water(slot, t, Liquid::pores) / p.pores;
+        saturation[{std::lround(cell.x), std::lround(cell.y)}] = s.water(slot, t, Liquid::pores) / p.pores.capacity;
     });
     const auto sample = [&](const Vec3& at) {
         const Vec3 cell = (at - first) / texel, floor = glm::floor(cell), f = cell - floor;
@@ -62,7 +62,7 @@ TEST(Soaking, ADropOnEvenPaperIsRound) {
     const FilmParams p = even_paper();
     for (const int texels : {60, 120}) {
         Wet s(testing::sheet(0.012, 1, texels));
-        s.wet([&](const Vec3& at) { return 6 * p.pores * disc(at, 1e-3); });
+        s.wet([&](const Vec3& at) { return 6 * p.pores.capacity * disc(at, 1e-3); });
         s.film.advance(s.canvas, 20, p);
         const auto r = radii(s, p);
         const auto [low, high] = std::minmax_element(r.begin(), r.end());
@@ -81,7 +81,7 @@ std::vector<double> fronts_of_rows(double texel, const FilmParams& p, double sec
     std::map<long, std::map<long, std::array<double, 2>>> rows;
     s.each([&](std::uint32_t slot, int t, const Vec3& at) {
         auto& c = rows[std::lround(std::floor(at.y / kRowWidth))][std::lround(2 * at.x / texel)];
-        c[0] += s.water(slot, t, Liquid::pores) / p.pores, c[1] += 1;
+        c[0] += s.water(slot, t, Liquid::pores) / p.pores.capacity, c[1] += 1;
     });
     std::vector<double> out;
     for (const auto& [row, columns] : rows) {
@@ -109,7 +109,7 @@ Spread spread_of(const std::vector<double>& v) {
 TEST(Soaking, FibresFeatherAFrontThatKeepsToWashburnsLawInTheMean) {
     FilmParams even = even_paper(), p = even;
     p.unevenness = film_params(load_substrate("rice-paper")).unevenness;
-    const double front = 4e-3, seconds = front * front / p.suction;
+    const double front = 4e-3, seconds = front * front / p.pores.suction;
     const std::vector<double> fine = fronts_of_rows(0.05e-3, p, seconds), coarse = fronts_of_rows(0.1e-3, p, seconds);
     const Spread f = spread_of(fine), c = spread_of(coarse), e = spread_of(fronts_of_rows(0.1e-3, even, seconds));
     double product = 0;

@@ -59,7 +59,7 @@ struct Wet {
 /// Nothing but what a test switches on.
 inline FilmParams still() {
     FilmParams p;
-    p.mobility = p.levelling = p.threshold = p.pin = p.mixing = p.grip = p.evaporation = p.tension = 0;
+    p.mobility = p.levelling = p.threshold = p.pin = p.mixing = p.grip = p.drying.evaporation = p.ripples.tension = 0;
     p.shortest_step = 0;
     return p;
 }
@@ -67,8 +67,8 @@ inline FilmParams still() {
 /// Dry rice paper with even fibres in air that is saturated; what is on the surface stays in its place.
 inline FilmParams even_paper() {
     FilmParams p = film_params(load_substrate("rice-paper"), {0, 0, -1});
-    p.unevenness = p.evaporation = p.rim_evaporation = p.mobility = p.levelling = 0;
-    p.levels_ripples = false;
+    p.unevenness = p.drying.evaporation = p.drying.rim_evaporation = p.mobility = p.levelling = 0;
+    p.ripples.level = false;
     return p;
 }
 

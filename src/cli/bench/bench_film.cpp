@@ -56,7 +56,7 @@ double wet_texels(const ink::Canvas& canvas) {
 struct FilmRun {
     FilmRun(const stroke::Model& model, ink::WetFilm& on, std::size_t tiles, bool whole = true)
         : film(on), canvas(wet_canvas(model, tiles)), params(ink::film_params(ink::load_substrate("bisque"))) {
-        if (!whole) params.levels_ripples = false, params.pores = 0;
+        if (!whole) params.ripples.level = false, params.pores.capacity = 0;
         const double area = model.texels.texel_size * model.texels.texel_size;
         dt = 0.005 * area / (params.mobility * 3);
         film.advance(canvas, dt, params);

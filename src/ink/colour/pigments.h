@@ -82,12 +82,27 @@ struct Ink {
     double strength() const;
 };
 
+/// How liquid behaves on a substrate and in its pores.
+struct Wetting {
+    float absorbency = 0.2f;  ///< rate of absorption of the water on it, 1/s
+    float pores = 2;          ///< capacity of its pores, film units of water
+    /// r, metres: radius of tubes that draw as its pores do, by their rate of rise [Washburn1921]; less than their
+    /// width, since paths through pores wind and end. 0: `diffusion` holds in the pores too.
+    float pore_radius = 0;
+    float contact_angle = 0;        ///< θ of water on its pores, degrees, below 90
+    float retention = 0;            ///< 0–1: fraction of the pigments that its pores retain from seeping liquid
+    float diffusion = 1e-8f;        ///< D of the wet film, m²/s per film unit of water
+    float threshold = 0.1f;         ///< w_c: film units of water that do not flow
+    float edge = 0.5f;              ///< 0–1: pinning of the rim of a wet spot, which darkens its edge as it dries
+    float evaporation = 1.0f / 60;  ///< film units of water per second at full wetness
+};
+
 /// A substrate.
 struct Substrate {
     std::string name, title;
     Rgb reflectance{0.8f, 0.8f, 0.8f};  ///< linear, diffuse, of the bare surface as it is seen
     float roughness = 0.5f;             ///< glTF perceptual roughness
-    float metallic = 0;
+    float metallic = 0;                 ///< glTF
     /// Part of the light that passes the bare substrate (KHR_materials_transmission); 0: it is opaque. Ink hides what
     /// is behind it: w film units leave exp(−4 w) of it.
     float transmission = 0;
@@ -98,17 +113,7 @@ struct Substrate {
     float interface = 0;
     float relief = 8e-6f;          ///< ζ: rms height of the surface's grain, metres
     float relief_length = 60e-6f;  ///< correlation length of the grain, metres
-    float absorbency = 0.2f;       ///< rate of absorption of the water on it, 1/s
-    float pores = 2;               ///< capacity of its pores, film units of water
-    /// r, metres: radius of tubes that draw as its pores do, by their rate of rise [Washburn1921]; less than their
-    /// width, since paths through pores wind and end. 0: `diffusion` holds in the pores too.
-    float pore_radius = 0;
-    float contact_angle = 0;        ///< θ of water on its pores, degrees, below 90
-    float retention = 0;            ///< 0–1: fraction of the pigments that its pores retain from seeping liquid
-    float diffusion = 1e-8f;        ///< D of the wet film, m²/s per film unit of water
-    float threshold = 0.1f;         ///< w_c: film units of water that do not flow
-    float edge = 0.5f;              ///< 0–1: pinning of the rim of a wet spot, which darkens its edge as it dries
-    float evaporation = 1.0f / 60;  ///< film units of water per second at full wetness
+    Wetting wetting;
 };
 
 /// Loads the preset `name` from data_folder()/models/inks, or the file when `name` ends in ".toml". Throws `Error`

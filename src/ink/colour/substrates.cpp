@@ -30,30 +30,32 @@ Substrate parse_substrate(std::string_view text, const std::string& source) {
     read(s.interface, "interface", 0, 1);
     read(s.relief, "relief_um", 0, 1000, 1e-6);
     read(s.relief_length, "relief_length_um", 1, 10000, 1e-6);
-    read(s.absorbency, "absorbency", 0, 100);
-    read(s.pores, "pores", 0, 1000);
-    read(s.pore_radius, "pore_radius_nm", 0, 1e6, 1e-9);
-    read(s.contact_angle, "contact_angle_deg", 0, 89);
-    read(s.retention, "retention", 0, 1);
-    read(s.diffusion, "diffusion", 0, 1e-4);
-    read(s.threshold, "threshold", 0, 10);
-    read(s.edge, "edge", 0, 1);
-    read(s.evaporation, "evaporation", 0, 10);
+    Wetting& w = s.wetting;
+    read(w.absorbency, "absorbency", 0, 100);
+    read(w.pores, "pores", 0, 1000);
+    read(w.pore_radius, "pore_radius_nm", 0, 1e6, 1e-9);
+    read(w.contact_angle, "contact_angle_deg", 0, 89);
+    read(w.retention, "retention", 0, 1);
+    read(w.diffusion, "diffusion", 0, 1e-4);
+    read(w.threshold, "threshold", 0, 10);
+    read(w.edge, "edge", 0, 1);
+    read(w.evaporation, "evaporation", 0, 10);
     return s;
 }
 
 std::string substrate_toml(const Substrate& s) {
+    const Wetting& w = s.wetting;
     return "name = " + quoted(s.name) + "\ntitle = " + quoted(s.title) + "\nreflectance = " + list_text(s.reflectance) +
            "\nroughness = " + shortest_float(s.roughness) + "\nmetallic = " + shortest_float(s.metallic) +
            (s.transmission > 0 ? "\ntransmission = " + shortest_float(s.transmission) : std::string()) +
            "\ncapacity = " + shortest_float(s.capacity) + "\ninterface = " + shortest_float(s.interface) +
            "\nrelief_um = " + shortest_in(s.relief, 1e-6) +
            "\nrelief_length_um = " + shortest_in(s.relief_length, 1e-6) +
-           "\nabsorbency = " + shortest_float(s.absorbency) + "\npores = " + shortest_float(s.pores) +
-           "\npore_radius_nm = " + shortest_in(s.pore_radius, 1e-9) +
-           "\ncontact_angle_deg = " + shortest_float(s.contact_angle) + "\nretention = " + shortest_float(s.retention) +
-           "\ndiffusion = " + shortest_float(s.diffusion) + "\nthreshold = " + shortest_float(s.threshold) +
-           "\nedge = " + shortest_float(s.edge) + "\nevaporation = " + shortest_float(s.evaporation) + "\n";
+           "\nabsorbency = " + shortest_float(w.absorbency) + "\npores = " + shortest_float(w.pores) +
+           "\npore_radius_nm = " + shortest_in(w.pore_radius, 1e-9) +
+           "\ncontact_angle_deg = " + shortest_float(w.contact_angle) + "\nretention = " + shortest_float(w.retention) +
+           "\ndiffusion = " + shortest_float(w.diffusion) + "\nthreshold = " + shortest_float(w.threshold) +
+           "\nedge = " + shortest_float(w.edge) + "\nevaporation = " + shortest_float(w.evaporation) + "\n";
 }
 
 Substrate load_substrate(std::string_view name) {

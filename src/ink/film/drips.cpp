@@ -55,9 +55,9 @@ Drips::Drips(const atlas::TexelMap& map, const atlas::SeamLinks& seams, const We
 
 double Drips::least(const FilmParams& p) {
     // A bead on a dry wall, or what is above `retained` of a film, over the bead's disc and the ring round it.
-    const double r = critical_radius(p.bead_angle, 1), ring = kCatchment * kCatchment - 1;
-    const double mean = std::pow(kLeastGrain, 1.5) * amount_of(r, p.bead_angle) / (kPi * r * r);
-    return std::min(p.retained + kStart * mean / (1 + ring), mean + p.trail);
+    const double r = critical_radius(p.weight.bead_angle, 1), ring = kCatchment * kCatchment - 1;
+    const double mean = std::pow(kLeastGrain, 1.5) * amount_of(r, p.weight.bead_angle) / (kPi * r * r);
+    return std::min(p.retained + kStart * mean / (1 + ring), mean + p.weight.trail);
 }
 
 /// The texels within `radius` of `centre` that hang together with `start`.
@@ -147,46 +147,46 @@ class Drips::Run {
     std::vector<std::uint32_t> written;
 
     void run(const Seed& seed, double seconds) {
-        const double start_radius = critical_radius(p_.bead_angle, steepness(seed.place));
+        const double start_radius = critical_radius(p_.weight.bead_angle, steepness(seed.place));
         Bead bead{.place = seed.place, .at = Vec3(d_.map_.position(seed.place.slot, seed.place.texel))};
         if (steepness(seed.place) < kLeastSteepness) return;
-        const double enough = amount_of(start_radius, p_.bead_angle);
+        const double enough = amount_of(start_radius, p_.weight.bead_angle);
         for (const Seen& other : seen_)
             if (glm::distance(other.at, bead.at) < other.radius) return;
         double reach = start_radius;
         for (int i = 0; i < kShifts; ++i) {
             if (!centre(bead, reach) || bead.amount < kHopeful * enough) return;
-            reach = std::max(start_radius, kRim * radius_of(bead.amount, p_.bead_angle));
+            reach = std::max(start_radius, kRim * radius_of(bead.amount, p_.weight.bead_angle));
         }
         for (const Seen& other : seen_)
             if (glm::distance(other.at, bead.at) < kSeparation * start_radius) return;
         const double grain = 1 + kGrainPart * (seed.grain - 1), radius = critical(bead, grain);
-        const double starts = kStart * amount_of(kAtRest * radius, p_.bead_angle);
+        const double starts = kStart * amount_of(kAtRest * radius, p_.weight.bead_angle);
         d_.collect_disc(bead.place, bead.at, kCatchment * reach);
         const WetBase base = fit_base(bead, reach);
         const auto [inside, round] = amounts(bead, base, reach);
         const double least = is_running(bead, base, inside) ? std::sqrt(kMoving) : kAtRest,
-                     runs = amount_of(least * radius, p_.bead_angle);
+                     runs = amount_of(least * radius, p_.weight.bead_angle);
         if (inside < runs && inside + round < starts) return;
         seen_.push_back({bead.at, reach});
         bead.amount = 0;
         if (inside < runs)
             draw_in(bead, base, reach, std::clamp((starts - inside) / round, 0.0, 1.0), kAny);
         else
-            draw_in(bead, base, reach, std::min(p_.drain * seconds, 1.0),
+            draw_in(bead, base, reach, std::min(p_.weight.drain * seconds, 1.0),
                     kBead * p_.retained);  // leaves other beads whole
         deposit_bead(bead, move(bead, grain, seconds));
-        seen_.push_back({bead.at, radius_of(bead.amount, p_.bead_angle)});
+        seen_.push_back({bead.at, radius_of(bead.amount, p_.weight.bead_angle)});
     }
 
   private:
     Vec3 downhill(const atlas::TexelRef& place) const {
         const Vec3 n(d_.map_.normal(place.slot, place.texel));
-        return p_.down - n * glm::dot(n, p_.down);
+        return p_.weight.down - n * glm::dot(n, p_.weight.down);
     }
     double steepness(const atlas::TexelRef& place) const { return glm::length(downhill(place)); }
     double critical(const Bead& bead, double grain) const {
-        return critical_radius(p_.bead_angle, steepness(bead.place)) * std::sqrt(grain);
+        return critical_radius(p_.weight.bead_angle, steepness(bead.place)) * std::sqrt(grain);
     }
     /// Of what runs; `critical` of what is at rest.
     double critical_moving(const Bead& bead, double grain) const { return std::sqrt(kMoving) * critical(bead, grain); }
@@ -211,7 +211,7 @@ class Drips::Run {
         double sum = 0;
         Vec3 moment{0};
         for (const Near& n : d_.disc_) {
-            const double over = std::max(0.0, static_cast<double>(liquid(n.ref)) - p_.trail) * n.area;
+            const double over = std::max(0.0, static_cast<double>(liquid(n.ref)) - p_.weight.trail) * n.area;
             sum += over;
             moment += over * n.at;
         }
@@ -241,10 +241,11 @@ class Drips::Run {
     Trail trail_of(const Bead& bead, double radius) const {
         const Vec3 down = downhill(bead.place);
         // Fast drops are pointed behind.
-        const double steep = glm::length(down), critical = std::sqrt(kMoving) * critical_radius(p_.bead_angle, steep);
+        const double steep = glm::length(down),
+                     critical = std::sqrt(kMoving) * critical_radius(p_.weight.bead_angle, steep);
         const double ratio = radius / critical, pace = std::clamp(ratio * ratio - 1, 0.0, kFastest);
         return {bead.at, down / steep, std::min(radius, std::sqrt(radius * critical)),
-                p_.trail * std::clamp(std::cbrt(pace * pace), kThinnest, 1.0)};
+                p_.weight.trail * std::clamp(std::cbrt(pace * pace), kThinnest, 1.0)};
     }
     double trail(const Near& n, const Trail& t) const {
         const Vec3 d = n.at - t.at;
@@ -275,7 +276,7 @@ class Drips::Run {
             middle += n.area * d;
             square += n.area * glm::dot(d, d);
         }
-        const Trail trail = trail_of(bead, radius_of(bead.amount, p_.bead_angle));
+        const Trail trail = trail_of(bead, radius_of(bead.amount, p_.weight.bead_angle));
         if (!(area > 0)) return {.trail = trail};
         const double mean = sum / area;
         return {mean, (moment - mean * middle) * (2 / square), trail};  // least squares on a full ring
@@ -300,11 +301,11 @@ class Drips::Run {
     /// Whether what lies there was laid down as a cap, which one at rest is not any more, and hangs on a trail: a dot
     /// that was put on dry surface is held by the line all round it. `collect_disc` has been there.
     bool is_running(const Bead& bead, const WetBase& base, double amount) const {
-        const double radius = radius_of(amount, p_.bead_angle);
+        const double radius = radius_of(amount, p_.weight.bead_angle);
         return is_full(bead, base, radius) && is_wet_behind(bead, radius);
     }
     bool is_full(const Bead& bead, const WetBase& base, double radius) const {
-        const double cap = 0.5 * p_.bead_angle * radius / kFilmUnit;
+        const double cap = 0.5 * p_.weight.bead_angle * radius / kFilmUnit;
         double sum = 0, area = 0;
         for (const Near& n : d_.disc_)
             if (n.distance < kSummit * radius)
@@ -320,10 +321,10 @@ class Drips::Run {
             const double behind = -glm::dot(d, down),
                          across = std::sqrt(std::max(0.0, glm::dot(d, d) - behind * behind));
             if (behind < from || behind > to || across > kTrack * radius) continue;
-            wet += std::min(static_cast<double>(liquid(n.ref)), kThinnest * p_.trail) * n.area;
+            wet += std::min(static_cast<double>(liquid(n.ref)), kThinnest * p_.weight.trail) * n.area;
             area += n.area;
         }
-        return wet > 0.5 * kThinnest * p_.trail * area;
+        return wet > 0.5 * kThinnest * p_.weight.trail * area;
     }
     /// All of the one and `part` of the other, where it is less than `thick`, go into the bead.
     void draw_in(Bead& bead, const WetBase& base, double radius, double part, double thick) {
@@ -351,7 +352,7 @@ class Drips::Run {
                 if (n.distance < kRim * radius) take(bead, n, rest(other, base, n));
             d_.collect_disc(bead.place, bead.at, radius);
         }
-        for (const Near& n : d_.disc_) take(bead, n, std::max(p_.retained, p_.trail));
+        for (const Near& n : d_.disc_) take(bead, n, std::max(p_.retained, p_.weight.trail));
     }
 
     /// What is thicker than `rest`, with its pigments.
@@ -403,7 +404,7 @@ class Drips::Run {
 
     /// Whether it came to rest where the surface holds it.
     bool move(Bead& bead, double grain, double seconds) {
-        double radius = radius_of(bead.amount, p_.bead_angle);
+        double radius = radius_of(bead.amount, p_.weight.bead_angle);
         d_.collect_disc(bead.place, bead.at, radius);
         leave_trail(bead, radius);
         const double least_step = 0.5 * d_.map_.texel_size;
@@ -412,7 +413,7 @@ class Drips::Run {
             const double steep = glm::length(down), ratio = radius / critical_moving(bead, grain);
             if (steep < kLeastSteepness) return false;
             if (ratio < kStops) return true;
-            const double speed = p_.bead_speed * std::min(ratio * ratio - 1, kFastest);
+            const double speed = p_.weight.bead_speed * std::min(ratio * ratio - 1, kFastest);
             const double step = std::min(std::max(least_step, 0.08 * radius), speed * seconds);
             seconds -= step / speed;
             d_.collect_disc(bead.place, bead.at, radius);
@@ -422,7 +423,7 @@ class Drips::Run {
             d_.collect_disc(bead.place, bead.at, radius);
             take_up(bead, radius);
             leave_trail(bead, radius);
-            radius = radius_of(bead.amount, p_.bead_angle);
+            radius = radius_of(bead.amount, p_.weight.bead_angle);
         }
         return radius < kStops * critical_moving(bead, grain);
     }
@@ -430,7 +431,7 @@ class Drips::Run {
     /// As a cap whose middle is the bead's; what rounding leaves over goes to the texel there. At rest it is blunt in
     /// front, where it meets dry surface, and drawn out behind, where its own trail holds it at a lower angle.
     void deposit_bead(Bead& bead, bool rests) {
-        const double radius = radius_of(bead.amount, p_.bead_angle), square = radius * radius;
+        const double radius = radius_of(bead.amount, p_.weight.bead_angle), square = radius * radius;
         if (rests) return hang(bead);
         d_.collect_disc(bead.place, bead.at, radius);
         // Texels lie unevenly at seams: without the tilt a bead would creep to one side, step by step.
@@ -449,7 +450,7 @@ class Drips::Run {
         spread(bead, sum, height);
     }
     void hang(Bead& bead) {
-        const double radius = radius_of(bead.amount, kRestAngle * p_.bead_angle);
+        const double radius = radius_of(bead.amount, kRestAngle * p_.weight.bead_angle);
         d_.collect_disc(bead.place, bead.at, kTail * radius);
         const Vec3 down = glm::normalize(downhill(bead.place));
         const auto height = [&](const Near& n) {
@@ -459,7 +460,8 @@ class Drips::Run {
             const double cap =
                 std::max(0.0, 1 - across / (radius * radius) - front * front - behind * behind / (kTail * kTail));
             // A cap before its middle; behind, it runs out flat into the trail, where there is one.
-            const double trail = std::clamp(static_cast<double>(liquid(n.ref)) / (kThinnest * p_.trail), 0.0, 1.0);
+            const double trail =
+                std::clamp(static_cast<double>(liquid(n.ref)) / (kThinnest * p_.weight.trail), 0.0, 1.0);
             const double wet = std::lerp(1.0, trail, std::clamp(2 * behind - 1, 0.0, 1.0));
             return wet * std::lerp(cap, cap * cap, std::min(behind, 1.0)) * n.area;
         };

@@ -53,8 +53,8 @@ bool load(Field& field, const Near& near, PlaneOf&& plane_of) {
 
 /// `step` without what it does of its own: for flow that is computed elsewhere.
 Step still(Step step) {
-    for (float* rate :
-         {&step.flow, &step.levelling, &step.mixing, &step.relief, &step.evaporation, &step.rim, &step.most})
+    for (float* rate : {&step.flow, &step.levelling, &step.mixing, &step.relief, &step.drying.evaporation,
+                        &step.drying.rim, &step.limit.most})
         *rate = 0;
     return step;
 }
@@ -66,6 +66,13 @@ bool all_zero(const Plane& plane) {
 }  // namespace
 
 struct WetFilm::State : TileList {
+    /// Steps by tension.
+    struct LevelSteps {
+        bool in_work = false;         ///< the step in work is one of them
+        double seconds = kLevelStep;  ///< of the next one
+        double least = kLevelStep;
+    };
+
     std::vector<std::uint8_t> reported;
     /// [n_slots] of what is dry, film units: found once in an advance, null where it is plain.
     std::vector<std::unique_ptr<Plane>> relief;
@@ -78,10 +85,8 @@ struct WetFilm::State : TileList {
     std::vector<std::uint32_t> part_order;  ///< of `order` what a step in parts, or by tension, goes through
     Tension tension;
     Seepage seepage;
-    bool levels = false;             ///< the step in work is one by tension
-    bool seeps = false;              ///< the step in work is one through the pores
-    double level_step = kLevelStep;  ///< seconds
-    double least_level_step = kLevelStep;
+    LevelSteps level_steps;
+    bool seeps = false;  ///< the step in work is one through the pores
     std::mutex mutex;
     std::vector<std::unique_ptr<Worker>> workers;  ///< idle ones
 
@@ -116,7 +121,7 @@ struct WetFilm::State : TileList {
 
     /// Beads run for the time of a step. Whether any did.
     bool run_beads(Canvas& canvas, const FilmParams& params, double dt, const BeforeFn& before) {
-        if (!(glm::length(params.down) > 0)) return false;
+        if (!(glm::length(params.weight.down) > 0)) return false;
         const std::vector<Drips::Seed> seeds = seeds_of_beads(canvas, params);
         if (seeds.empty()) return false;
         if (!drips) drips = std::make_unique<Drips>(map, seams, medium().free);
@@ -170,9 +175,9 @@ struct WetFilm::State : TileList {
             for (std::size_t i = begin; i < end; ++i) {
                 auto& g = geometry[list[i].slot];
                 if (!g) g = std::make_unique<Geometry>(make_geometry(map, seams, list[i].slot, medium()));
-                list[i].stiffness = g->stiffness;
-                list[i].geometry = g.get();
-                list[i].diagonals = g->gd.get();
+                list[i].faces.stiffness = g->stiffness;
+                list[i].faces.geometry = g.get();
+                list[i].faces.diagonals = g->gd.get();
                 feel(canvas, list[i].slot);
                 tension.look_at(map, list[i].slot);
                 find_planes(canvas, i);
@@ -184,7 +189,7 @@ struct WetFilm::State : TileList {
     /// On relief the liquid's own surface levels, and not its depth.
     Beside beside(const Active& tile, const Near& near) const {
         const auto blocks = [](const Active& a, const Sources& s) {
-            return s.relief ? std::uint16_t{0} : a.geometry->blocks;
+            return s.relief ? std::uint16_t{0} : a.faces.geometry->blocks;
         };
         Beside out{.here = blocks(tile, *near[4])};
         constexpr std::array kSides{3, 5, 1, 7};
@@ -214,12 +219,12 @@ struct WetFilm::State : TileList {
         ahead.fetch(kLines);
         if (seeps) {
             seepage.flow(static_cast<std::uint32_t>(index), *this, sources, pigments, work, worker.crossing);
-        } else if (levels) {
+        } else if (level_steps.in_work) {
             tension_flow(work, g, tension.tile(index)->grid, step.grip);
             tension.cross_seams(static_cast<std::uint32_t>(index), sources, pigments, step.grip, work, worker.crossing);
         } else {
             const bool thin = fluxes(work, g, step);
-            if (step.most > 0 && any_w) film_block_flow(work, g, beside(tile, near), step);
+            if (step.limit.most > 0 && any_w) film_block_flow(work, g, beside(tile, near), step);
             if (step.searches) {
                 const float held = tension.held_on(tile.slot);
                 tile.ripples =
@@ -233,7 +238,7 @@ struct WetFilm::State : TileList {
         const std::uint64_t seed = hash_bits(hash_bits(tile.slot, number),
                                              std::bit_cast<std::uint32_t>(tile.outcome.most_w + tile.outcome.most_s));
         const Outcome before = tile.outcome;
-        const bool seam_was = tile.seam_wet;
+        const bool seam_was = tile.seams.wet;
         tile.outcome = {};
         tile.pigments = 0;
         // Through the pores liquid goes several texels in a step.
@@ -248,11 +253,11 @@ struct WetFilm::State : TileList {
             if (!tile.closing) tile.closing = std::make_unique<std::array<std::uint8_t, kTexels>>();
             *tile.closing = closing;
         }
-        tile.seam_wet = false;
-        for (const atlas::SeamLink& l : tile.links)
-            tile.seam_wet = tile.seam_wet || (*tile.w)[l.texel] + (*tile.s)[l.texel] > 0;
+        tile.seams.wet = false;
+        for (const atlas::SeamLink& l : tile.seams.links)
+            tile.seams.wet = tile.seams.wet || (*tile.w)[l.texel] + (*tile.s)[l.texel] > 0;
         // Until the list is looked at: a step may have parts.
-        tile.spreads = tile.spreads || before.sides != tile.outcome.sides || seam_was != tile.seam_wet ||
+        tile.spreads = tile.spreads || before.sides != tile.outcome.sides || seam_was != tile.seams.wet ||
                        (before.most_w + before.most_s > 0) != tile.wet();
         for (int p = 0; p < pigments; ++p)
             compute_pigment(index, near, p, seed + 1 + static_cast<std::uint64_t>(p), worker);
@@ -312,13 +317,13 @@ struct WetFilm::State : TileList {
         planes_of(static_cast<std::uint32_t>(index), 0, sizeof(Plane));
         for (const int above : {7, 8})
             planes_of(tile.around[above], 0, 64);  // the row below was read before, and is at hand
-        for (const Beyond& other : tile.others)
+        for (const Beyond& other : tile.seams.others)
             for (unsigned lines = other.lines; lines && other.place != kNone; lines &= lines - 1) {
                 const std::size_t line = 64 * static_cast<std::size_t>(std::countr_zero(lines));
                 planes_of(other.place, line, line + 64);
             }
-        ahead.add(tile.geometry, 0, offsetof(Geometry, grain));
-        ahead.add(tile.diagonals, 0, sizeof(Geometry::Diagonals));
+        ahead.add(tile.faces.geometry, 0, offsetof(Geometry, grain));
+        ahead.add(tile.faces.diagonals, 0, sizeof(Geometry::Diagonals));
     }
 
     void find_planes(const Canvas& canvas, std::size_t index) {
@@ -372,13 +377,15 @@ struct WetFilm::State : TileList {
     /// they are.
     std::span<const std::uint32_t> going() {
         const auto set = [&](std::uint32_t i, std::uint32_t n) { readers[i].store(n, std::memory_order_relaxed); };
-        if (part != Part::inside && !levels && !seeps) {
+        if (part != Part::inside && !level_steps.in_work && !seeps) {
             for (std::uint32_t i = 0; i < list.size(); ++i) set(i, n_readers[i]);
             return order;
         }
         part_order.clear();
         for (const std::uint32_t i : order)
-            if (seeps ? seepage.tile(i) != nullptr : levels ? tension.tile(i) != nullptr : beside_seam(list[i].slot))
+            if (seeps                 ? seepage.tile(i) != nullptr
+                : level_steps.in_work ? tension.tile(i) != nullptr
+                                      : beside_seam(list[i].slot))
                 part_order.push_back(i);
         for (std::uint32_t i = 0; i < list.size(); ++i) {
             set(i, 0);
@@ -410,7 +417,7 @@ struct WetFilm::State : TileList {
                 compute(tiles[i], pigments, rates, number, *worker);
                 each_read(tiles[i], [&](std::uint32_t read) {
                     if (last_reader(readers[read], alone))
-                        commit(canvas, read, static_cast<float>(params.stain), worker->spare);
+                        commit(canvas, read, static_cast<float>(params.drying.stain), worker->spare);
                 });
             }
             give_back(std::move(worker));
@@ -435,29 +442,30 @@ struct WetFilm::State : TileList {
         if (bedded) sources.clear();
     }
 
-    /// Ripples level for `seconds`, in steps of `level_step`, which grows while all is slow.
+    /// Ripples level for `seconds`, in steps of `level_steps.seconds`, which grows while all is slow.
     void level(Canvas& canvas, const FilmParams& params, double seconds, const Step& last, FilmReport& report) {
         if (!tension.find(*this, relief)) {
-            level_step = std::min(2 * level_step, kLongestLevelStep);
+            level_steps.seconds = std::min(2 * level_steps.seconds, kLongestLevelStep);
             return;
         }
         const Step rates = still(last);
         part = Part::whole;
         std::uint64_t n = 0;
         for (double left = seconds; left > 0;) {
-            const double dt = left / std::ceil(left / level_step * (1 - 1e-9));
+            const double dt = left / std::ceil(left / level_steps.seconds * (1 - 1e-9));
             if (sources.empty()) prepare(canvas);
             const Tension::Solved solved = tension.solve(*this, sources, dt);
-            levels = true;
+            level_steps.in_work = true;
             step(canvas, params, rates, report.steps | ++n << 48, report);
-            levels = false;
+            level_steps.in_work = false;
             left = dt < left * (1 - 1e-9) ? left - dt : 0;
             if (solved.bends > kSlow || solved.change < kLittle)
-                level_step = std::min(2 * level_step, kLongestLevelStep);
+                level_steps.seconds = std::min(2 * level_steps.seconds, kLongestLevelStep);
             else if (solved.bends < kFast && solved.change > kMuch)
-                level_step = std::max(0.5 * level_step, solved.change > kVeryMuch
-                                                            ? kShortestLevelStep * least_level_step / kLevelStep
-                                                            : least_level_step);
+                level_steps.seconds =
+                    std::max(0.5 * level_steps.seconds, solved.change > kVeryMuch
+                                                            ? kShortestLevelStep * level_steps.least / kLevelStep
+                                                            : level_steps.least);
         }
     }
 
@@ -516,14 +524,14 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     s.forget_relief();
     s.tension.start(params, s.map);
     s.seepage.start(params);
-    s.set_unevenness(params.unevenness, params.retention);  // fibres sieve
+    s.set_unevenness(params.unevenness, params.pores.retention);  // fibres sieve
     s.begin(canvas);
     double beads = 0;  // seconds that they have not run yet
-    bool running = glm::length(params.down) > 0;
+    bool running = glm::length(params.weight.down) > 0;
     // A long wait ends with what is level; how it became so needs not be followed at every moment.
-    s.least_level_step = std::clamp(kPartOfWait * seconds, kLevelStep, kLeastOfLongWait);
-    s.level_step = s.least_level_step;
-    double rippled = params.unlevelled;  // seconds in which ripples have not levelled yet
+    s.level_steps.least = std::clamp(kPartOfWait * seconds, kLevelStep, kLeastOfLongWait);
+    s.level_steps.seconds = s.level_steps.least;
+    double rippled = params.ripples.unlevelled;  // seconds in which ripples have not levelled yet
     for (double left = seconds; left > 0 && !s.list.empty();) {
         if (progress && !progress("drying", 1 - left / seconds)) {
             s.end(canvas);
@@ -534,11 +542,11 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
         const double dt = chosen.dt;
         left = dt < left * (1 - 1e-9) ? left - dt : 0;
         rippled += dt;
-        const bool level = params.tension > 0 && params.levels_ripples &&
-                           (rippled > 0.9 * std::max(s.level_step, kLevelEvery) || left == 0);
+        const bool level = params.ripples.tension > 0 && params.ripples.level &&
+                           (rippled > 0.9 * std::max(s.level_steps.seconds, kLevelEvery) || left == 0);
         if (level) chosen.step.searches = true;
         s.step_in_parts(canvas, params, chosen, report, before);
-        if (params.pores > 0) s.seep(canvas, params, dt, chosen.step, report, before);
+        if (params.pores.capacity > 0) s.seep(canvas, params, dt, chosen.step, report, before);
         if (level && !s.list.empty()) s.level(canvas, params, rippled, chosen.step, report);
         if (level) rippled = 0;
         beads += dt;

@@ -25,7 +25,7 @@ void each_reached(const Active& tile, Fn&& fn) {
 
 void look(const Canvas& canvas, Active& tile) {
     tile.outcome.sides = 15;
-    tile.seam_wet = true;
+    tile.seams.wet = true;
     const Plane *w = canvas.liquid(tile.slot, Liquid::film), *s = canvas.liquid(tile.slot, Liquid::pores);
     tile.outcome.most_w = w ? greatest(w->data()) : 0;
     tile.outcome.most_s = s ? greatest(s->data()) : 0;
@@ -50,10 +50,11 @@ TileList::TileList(const atlas::TexelMap& m, atlas::SeamLinks s)
       seams(std::move(s)),
       geometry(m.n_slots()),
       split_geometry(m.n_slots()),
-      mark_(m.n_slots(), 0),
-      place_(m.n_slots(), kNone) {
-    for (const atlas::SeamLink& l : seams.links) weights_.push_back(l.weight);
-    taps_ = seams.taps;
+      scratch_{.wanted = {},
+               .mark = std::vector<std::uint8_t>(m.n_slots(), 0),
+               .place = std::vector<std::uint32_t>(m.n_slots(), kNone)} {
+    for (const atlas::SeamLink& l : seams.links) unlimited_.weights.push_back(l.weight);
+    unlimited_.taps = seams.taps;
     find_near();
     find_link_areas();
     find_beside();
@@ -84,30 +85,30 @@ void TileList::split_faces(std::uint32_t slot) {
 }
 
 void TileList::find_near() {
-    near_start_.assign(1, 0);
+    over_seams_.start.assign(1, 0);
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
-        const std::size_t first = near_.size();
+        const std::size_t first = over_seams_.tiles.size();
         const auto add = [&](std::uint32_t other, std::uint8_t texel, bool linked) {
             if (other == kNone) return;
             const auto row = static_cast<std::uint16_t>(1u << texel / kSide);
-            const auto begin = near_.begin() + static_cast<std::ptrdiff_t>(first);
-            const auto at = std::lower_bound(begin, near_.end(), other,
+            const auto begin = over_seams_.tiles.begin() + static_cast<std::ptrdiff_t>(first);
+            const auto at = std::lower_bound(begin, over_seams_.tiles.end(), other,
                                              [](const Beyond& b, std::uint32_t s) { return b.slot < s; });
-            if (at == near_.end() || at->slot != other)
-                near_.insert(at, {other, kNone, linked, row});
+            if (at == over_seams_.tiles.end() || at->slot != other)
+                over_seams_.tiles.insert(at, {other, kNone, linked, row});
             else
                 at->linked |= linked, at->lines |= row;
         };
         for (const atlas::SeamLink& l : links_of(slot)) add(l.other_slot, l.other_texel, true);
         for (std::uint32_t i = seams.tap_start[slot]; i < seams.tap_start[slot + 1]; ++i)
             add(seams.taps[i].other_slot, seams.taps[i].other_texel, false);
-        const auto begin = near_.begin() + static_cast<std::ptrdiff_t>(first);
+        const auto begin = over_seams_.tiles.begin() + static_cast<std::ptrdiff_t>(first);
         for (const atlas::SeamLink& l : links_of(slot)) {
-            const auto at = std::lower_bound(begin, near_.end(), l.other_slot,
+            const auto at = std::lower_bound(begin, over_seams_.tiles.end(), l.other_slot,
                                              [](const Beyond& b, std::uint32_t s) { return b.slot < s; });
-            link_near_.push_back(static_cast<std::uint16_t>(at - begin));
+            over_seams_.of_link.push_back(static_cast<std::uint16_t>(at - begin));
         }
-        near_start_.push_back(static_cast<std::uint32_t>(near_.size()));
+        over_seams_.start.push_back(static_cast<std::uint32_t>(over_seams_.tiles.size()));
     }
 }
 
@@ -149,7 +150,7 @@ void TileList::search_again() {
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
         for (std::uint32_t i = seams.start[slot]; i < seams.start[slot + 1]; ++i) {
             atlas::SeamLink& l = seams.links[i];
-            double weight = static_cast<double>(weights_[i]);
+            double weight = static_cast<double>(unlimited_.weights[i]);
             if (medium_.unevenness > 0) weight *= root(ease, slot, l.texel) * root(beyond, l.other_slot, l.other_texel);
             if (medium_.free) weight *= passing(medium_.free(slot, l.texel), medium_.free(l.other_slot, l.other_texel));
             l.weight = static_cast<float>(weight);
@@ -160,16 +161,16 @@ void TileList::search_again() {
 
 /// Where a stencil edge lies on a tap, nothing slopes that way: the texel itself takes the tap's place.
 void TileList::close_taps() {
-    seams.taps = taps_;
+    seams.taps = unlimited_.taps;
     if (!medium_.free) return;
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
         for (std::uint32_t i = seams.tap_start[slot], next = i; i < seams.tap_start[slot + 1]; i = next) {
-            const atlas::SeamTap first = taps_[i];
+            const atlas::SeamTap first = unlimited_.taps[i];
             bool closed = false;
-            for (;
-                 next < seams.tap_start[slot + 1] && taps_[next].texel == first.texel && taps_[next].side == first.side;
+            for (; next < seams.tap_start[slot + 1] && unlimited_.taps[next].texel == first.texel &&
+                   unlimited_.taps[next].side == first.side;
                  ++next)
-                if (const atlas::SeamTap& tap = taps_[next]; tap.other_slot != kNone)
+                if (const atlas::SeamTap& tap = unlimited_.taps[next]; tap.other_slot != kNone)
                     closed = closed ||
                              passing(medium_.free(slot, tap.texel), medium_.free(tap.other_slot, tap.other_texel)) == 0;
             if (!closed) continue;
@@ -239,8 +240,8 @@ void TileList::begin(const Canvas& canvas) {
 void TileList::spread() {
     std::vector<std::uint32_t> wanted;
     const auto want = [&](std::uint32_t slot) {
-        if (slot == kNone || mark_[slot]) return;
-        mark_[slot] = 1;
+        if (slot == kNone || scratch_.mark[slot]) return;
+        scratch_.mark[slot] = 1;
         wanted.push_back(slot);
     };
     for (const Active& tile : list) {
@@ -248,7 +249,7 @@ void TileList::spread() {
         want(tile.slot);
         const std::array<std::uint32_t, 9> near = around(tile.slot);
         each_reached(tile, [&](int i) { want(near[i]); });
-        if (tile.seam_wet)
+        if (tile.seams.wet)
             for (const atlas::SeamLink& l : links_of(tile.slot)) want(l.other_slot);
     }
     std::sort(wanted.begin(), wanted.end());
@@ -258,15 +259,16 @@ void TileList::spread() {
         while (k < list.size() && list[k].slot < wanted[i]) ++k;
         if (k < list.size() && list[k].slot == wanted[i]) next[i] = std::move(list[k]);
         next[i].slot = wanted[i];
-        next[i].links = links_of(wanted[i]);
-        next[i].link_others =
-            std::span<const std::uint16_t>(link_near_).subspan(seams.start[wanted[i]], next[i].links.size());
-        next[i].link_areas = std::span<const float>(link_areas_).subspan(seams.start[wanted[i]], next[i].links.size());
-        next[i].taps =
+        next[i].seams.links = links_of(wanted[i]);
+        next[i].seams.link_others = std::span<const std::uint16_t>(over_seams_.of_link)
+                                        .subspan(seams.start[wanted[i]], next[i].seams.links.size());
+        next[i].seams.link_areas =
+            std::span<const float>(link_areas_).subspan(seams.start[wanted[i]], next[i].seams.links.size());
+        next[i].seams.taps =
             std::span(seams.taps)
                 .subspan(seams.tap_start[wanted[i]], seams.tap_start[wanted[i] + 1] - seams.tap_start[wanted[i]]);
-        place_[wanted[i]] = static_cast<std::uint32_t>(i);
-        mark_[wanted[i]] = 0;
+        scratch_.place[wanted[i]] = static_cast<std::uint32_t>(i);
+        scratch_.mark[wanted[i]] = 0;
     }
     list = std::move(next);
     for (Active& tile : list) {
@@ -275,21 +277,22 @@ void TileList::spread() {
         for (int i = 0; i < 9; ++i) {
             std::uint32_t& at = tile.around[i];
             if (at == kNone) continue;
-            at = place_[at];
+            at = scratch_.place[at];
             if (at == kNone) tile.absent |= 1u << i;
         }
     }
     others_.clear();
     for (const Active& tile : list)
-        for (std::uint32_t i = near_start_[tile.slot]; i < near_start_[tile.slot + 1]; ++i)
-            others_.push_back({near_[i].slot, place_[near_[i].slot], near_[i].linked, near_[i].lines});
+        for (std::uint32_t i = over_seams_.start[tile.slot]; i < over_seams_.start[tile.slot + 1]; ++i)
+            others_.push_back({over_seams_.tiles[i].slot, scratch_.place[over_seams_.tiles[i].slot],
+                               over_seams_.tiles[i].linked, over_seams_.tiles[i].lines});
     std::size_t from = 0;
     for (Active& tile : list) {
-        const std::size_t n = near_start_[tile.slot + 1] - near_start_[tile.slot];
-        tile.others = std::span<const Beyond>(others_).subspan(from, n);
+        const std::size_t n = over_seams_.start[tile.slot + 1] - over_seams_.start[tile.slot];
+        tile.seams.others = std::span<const Beyond>(others_).subspan(from, n);
         from += n;
     }
-    for (const Active& tile : list) place_[tile.slot] = kNone;
+    for (const Active& tile : list) scratch_.place[tile.slot] = kNone;
     readers = std::make_unique<std::atomic<std::uint32_t>[]>(list.size());
     n_readers.assign(list.size(), 0);
     for (std::size_t i = 0; i < list.size(); ++i) each_read(i, [&](std::uint32_t read) { ++n_readers[read]; });
@@ -311,28 +314,28 @@ bool TileList::changed() {
     bool any = false;
     for (Active& tile : list) any |= std::exchange(tile.spreads, false);
     if (!any) return false;
-    wanted_.assign(list.size(), 0);
+    scratch_.wanted.assign(list.size(), 0);
     bool more = false;
     for (std::size_t at = 0; at < list.size() && !more; ++at) {
         const Active& tile = list[at];
         if (!tile.wet()) continue;
-        wanted_[at] = 1;
+        scratch_.wanted[at] = 1;
         each_reached(tile, [&](int i) {
             if (tile.around[i] != kNone)
-                wanted_[tile.around[i]] = 1;
+                scratch_.wanted[tile.around[i]] = 1;
             else
                 more = more || (tile.absent >> i & 1);
         });
-        if (!tile.seam_wet) continue;
-        for (const Beyond& other : tile.others) {
+        if (!tile.seams.wet) continue;
+        for (const Beyond& other : tile.seams.others) {
             if (!other.linked) continue;
             if (other.place != kNone)
-                wanted_[other.place] = 1;
+                scratch_.wanted[other.place] = 1;
             else
                 more = true;
         }
     }
-    return more || std::find(wanted_.begin(), wanted_.end(), 0) != wanted_.end();
+    return more || std::find(scratch_.wanted.begin(), scratch_.wanted.end(), 0) != scratch_.wanted.end();
 }
 
 void TileList::search_tile(const Canvas& canvas, std::span<const std::uint32_t> slots) {
@@ -376,7 +379,7 @@ std::vector<Drips::Seed> TileList::seeds_of_beads(const Canvas& canvas, const Fi
             if (w[t] > same->weak * grain)
                 *same = {cube,
                          w[t] / grain,
-                         static_cast<float>(-glm::dot(params.down, at)),
+                         static_cast<float>(-glm::dot(params.weight.down, at)),
                          {{tile.slot, static_cast<std::uint8_t>(t)}, static_cast<double>(grain)}};
         }
     }

@@ -44,22 +44,32 @@ struct Beyond {
     std::uint16_t lines = 0;      ///< bits: rows of texels there that this tile looks at
 };
 
+/// Seams of a tile in the list.
+struct ActiveSeams {
+    std::span<const Beyond> others;  ///< ascending slots
+    std::span<const atlas::SeamLink> links;
+    std::span<const std::uint16_t> link_others;  ///< of the links: places in `others`
+    std::span<const float> link_areas;           ///< of the links: area over the mean that each may empty
+    std::span<const atlas::SeamTap> taps;
+    bool wet = false;  ///< liquid stands at a link
+};
+
+/// Faces of a tile in the list.
+struct ActiveFaces {
+    float stiffness = 0;                             ///< the geometry's
+    const Geometry* geometry = nullptr;              ///< null: not looked up yet
+    const Geometry::Diagonals* diagonals = nullptr;  ///< the geometry's; for prefetching
+};
+
 /// A tile in the list of a step.
 struct Active {
     std::uint32_t slot = kNone;
     std::array<std::uint32_t, 9> around{};  ///< places in the list, row by row, this one in the middle
     std::uint32_t absent = 0;               ///< bits: tiles around it that there are, but not in the list
     std::uint32_t pigments = 0;             ///< bits: those computed
-    std::span<const Beyond> others;         ///< ascending slots
-    std::span<const atlas::SeamLink> links;
-    std::span<const std::uint16_t> link_others;  ///< of the links: places in `others`
-    std::span<const float> link_areas;           ///< of the links: area over the mean that each may empty
-    std::span<const atlas::SeamTap> taps;
+    ActiveSeams seams;
     Outcome outcome;
-    float stiffness = 0;
-    const Geometry* geometry = nullptr;              ///< null: not looked up yet
-    const Geometry::Diagonals* diagonals = nullptr;  ///< its own; for prefetching
-    bool seam_wet = false;
+    ActiveFaces faces;
     bool spreads = true;  ///< wet at other texels than at the last `changed`
     bool idle = false;    ///< no wet texel in this tile or its neighbours
     Ripples ripples;      ///< at the last step that searched for them
@@ -119,23 +129,35 @@ struct TileList {
     void each_read(std::size_t index, Fn&& fn) const {
         for (const std::uint32_t i : list[index].around)
             if (i != kNone) fn(i);
-        for (const Beyond& other : list[index].others)
+        for (const Beyond& other : list[index].seams.others)
             if (other.place != kNone) fn(other.place);
     }
 
   private:
-    std::vector<float> weights_;        ///< of the links as they came
-    std::vector<atlas::SeamTap> taps_;  ///< as they came
+    /// Links and taps as they came, before what goes over seams was limited.
+    struct Unlimited {
+        std::vector<float> weights;  ///< of the links
+        std::vector<atlas::SeamTap> taps;
+    };
+    /// Tiles over seams.
+    struct OverSeams {
+        std::vector<std::uint32_t> start;    ///< [n_slots + 1]
+        std::vector<Beyond> tiles;           ///< by slot; places unknown
+        std::vector<std::uint16_t> of_link;  ///< of the links: which of the slot's `tiles`
+    };
+    struct Scratch {
+        std::vector<std::uint8_t> wanted;  ///< of the list
+        std::vector<std::uint8_t> mark;    ///< [n_slots]
+        std::vector<std::uint32_t> place;  ///< [n_slots]
+    };
+
+    Unlimited unlimited_;
     FlowMedium medium_;
-    std::vector<std::uint32_t> near_start_;  ///< [n_slots + 1]
-    std::vector<Beyond> near_;               ///< over seams, by slot; places unknown
-    std::vector<std::uint16_t> link_near_;   ///< of the links: which of the slot's `near_`
-    std::vector<float> link_areas_;          ///< of the links
-    std::vector<Beyond> others_;             ///< of the list
-    std::vector<std::uint8_t> beside_;       ///< [n_slots]
-    std::vector<std::uint8_t> wanted_;       ///< of the list: scratch
-    std::vector<std::uint8_t> mark_;         ///< [n_slots] scratch
-    std::vector<std::uint32_t> place_;       ///< [n_slots] scratch
+    OverSeams over_seams_;
+    std::vector<float> link_areas_;     ///< of the links
+    std::vector<Beyond> others_;        ///< of the list
+    std::vector<std::uint8_t> beside_;  ///< [n_slots]
+    Scratch scratch_;
 
     void find_near();
     void search_again();

@@ -8,7 +8,7 @@ namespace {
 
 /// Of a tile's `others`.
 const Beyond* other_of(const Active& tile, std::uint32_t slot) {
-    return &*std::lower_bound(tile.others.begin(), tile.others.end(), slot,
+    return &*std::lower_bound(tile.seams.others.begin(), tile.seams.others.end(), slot,
                               [](const Beyond& b, std::uint32_t s) { return b.slot < s; });
 }
 
@@ -23,16 +23,16 @@ void slopes_over_seams(const SeamTile& at_seam, const Step& step, Work& work) {
     const auto& [tiles, sources, part, index] = at_seam;
     const Active& tile = tiles.list[index];
     const Geometry& g = tiles.faces_of(tile.slot, part);
-    const Beyond* other = tile.others.data();
+    const Beyond* other = tile.seams.others.data();
     work.sloping = true;
-    for (std::size_t i = 0; i < tile.taps.size();) {
-        const std::uint8_t texel = tile.taps[i].texel;
+    for (std::size_t i = 0; i < tile.seams.taps.size();) {
+        const std::uint8_t texel = tile.seams.taps[i].texel;
         const int k = field_of(texel), column = texel % kSide, row = texel / kSide;
-        const float here = std::min(work.total[k], step.rim_depth);
+        const float here = std::min(work.total[k], step.drying.rim_depth);
         std::array<float, 4> beyond{};
         std::array<bool, 4> tapped{};
-        for (; i < tile.taps.size() && tile.taps[i].texel == texel; ++i) {
-            const atlas::SeamTap& tap = tile.taps[i];
+        for (; i < tile.seams.taps.size() && tile.seams.taps[i].texel == texel; ++i) {
+            const atlas::SeamTap& tap = tile.seams.taps[i];
             tapped[tap.side] = true;
             if (tap.other_slot == kNone) {
                 beyond[tap.side] +=
@@ -62,15 +62,15 @@ void slopes_over_seams(const SeamTile& at_seam, const Step& step, Work& work) {
 void cross_seams(const SeamTile& at_seam, int pigments, const Step& step, bool thin, Work& work, Crossing& crossing) {
     const auto& [tiles, sources, part, index] = at_seam;
     const Active& tile = tiles.list[index];
-    crossing.clear(tile.links.size(), pigments);
-    if (tile.links.empty()) return;
-    for (std::size_t i = 0; i < tile.links.size(); ++i) {
-        const atlas::SeamLink& l = tile.links[i];
-        const std::uint32_t other = tile.others[tile.link_others[i]].place;
+    crossing.clear(tile.seams.links.size(), pigments);
+    if (tile.seams.links.empty()) return;
+    for (std::size_t i = 0; i < tile.seams.links.size(); ++i) {
+        const atlas::SeamLink& l = tile.seams.links[i];
+        const std::uint32_t other = tile.seams.others[tile.seams.link_others[i]].place;
         const std::array<float, 2> here = liquid_at(sources, static_cast<std::uint32_t>(index), l.texel),
                                    there = liquid_at(sources, other, l.other_texel);
         const float t = here[0] + here[1], u = there[0] + there[1];
-        thin = thin || u < step.rim_depth;
+        thin = thin || u < step.drying.rim_depth;
         if (!(t + u > 0) || other == kNone || part == Part::outside) continue;
         for (int p = 0; p < pigments; ++p)
             crossing.beyond[static_cast<std::size_t>(p) * crossing.links + crossing.size] =
@@ -84,14 +84,14 @@ void cross_seams(const SeamTile& at_seam, int pigments, const Step& step, bool t
         lanes.grain[1][lane] = both ? 0 : tiles.geometry[l.other_slot]->grain[field_of(l.other_texel)];
         lanes.z[0][lane] = at(sources[index].relief, l.texel);
         lanes.z[1][lane] = at(sources[other].relief, l.other_texel);
-        crossing.add(l, tile.link_areas[i], {here[0], there[0]}, {here[1], there[1]});
+        crossing.add(l, tile.seams.link_areas[i], {here[0], there[0]}, {here[1], there[1]});
     }
     wet::seam_fluxes(std::span(crossing.lanes).first((crossing.size + kSide - 1) / kSide), step);
     for (std::size_t i = 0; i < crossing.size; ++i) {
         const SeamLanes& l = crossing.lanes[i / kSide];
         work.dw[crossing.texels[i]] -= l.through[i % kSide];
     }
-    if (step.rim > 0 && thin) slopes_over_seams(at_seam, step, work);
+    if (step.drying.rim > 0 && thin) slopes_over_seams(at_seam, step, work);
 }
 
 }  // namespace tuft::ink::wet

@@ -28,8 +28,8 @@ struct Deepest {
     double stiffness = 4, w = 0;
 
     void take(const Active& tile) {
-        const auto own = static_cast<double>(tile.stiffness);
-        stiffness = std::max({stiffness, own, tile.links.empty() ? 0 : std::max(4.0, own) + kSeamStiffness});
+        const auto own = static_cast<double>(tile.faces.stiffness);
+        stiffness = std::max({stiffness, own, tile.seams.links.empty() ? 0 : std::max(4.0, own) + kSeamStiffness});
         w = std::max(w, static_cast<double>(tile.outcome.most_w));
     }
     double rate(const FilmParams& p, double levelling, double area, bool on_relief) const {
@@ -43,8 +43,8 @@ Step part_of(const Step& step, int parts, double stiffness) {
     const float part = 1 / static_cast<float>(parts);
     Step out = step;
     for (float* rate : {&out.flow, &out.levelling, &out.mixing, &out.relief}) *rate *= part;
-    out.limit = static_cast<float>(kFlowPart / stiffness);
-    out.most = out.evaporation = out.rim = 0;
+    out.limit.flow = static_cast<float>(kFlowPart / stiffness);
+    out.limit.most = out.drying.evaporation = out.drying.rim = 0;
     return out;
 }
 
@@ -53,7 +53,7 @@ Step part_of(const Step& step, int parts, double stiffness) {
 Chosen choose_step(const FilmParams& p, const TileList& tiles, double texel_size, bool on_relief, bool beads,
                    double left) {
     const double area = texel_size * texel_size;
-    const double levelling = glm::length(p.down) > 0 ? 0 : p.levelling;
+    const double levelling = glm::length(p.weight.down) > 0 ? 0 : p.levelling;
     Deepest all, beside;
     for (const Active& tile : tiles.list) {
         all.take(tile);
@@ -73,18 +73,18 @@ Chosen choose_step(const FilmParams& p, const TileList& tiles, double texel_size
     Step& step = out.step;
     step.flow = static_cast<float>(p.mobility * dt / area);
     step.levelling = static_cast<float>(levelling * dt / area);
-    step.limit = static_cast<float>(kFlowPart / stiffness);
-    step.most = limited ? static_cast<float>(kLimitPart / kFaces) * kFlowAreaUnit : 0;
-    step.most_of_link = static_cast<float>(kLimitPartOfLinks);
+    step.limit.flow = static_cast<float>(kFlowPart / stiffness);
+    step.limit.most = limited ? static_cast<float>(kLimitPart / kFaces) * kFlowAreaUnit : 0;
+    step.limit.most_of_link = static_cast<float>(kLimitPartOfLinks);
     step.threshold = static_cast<float>(p.threshold);
     step.pin = static_cast<float>(p.pin);
     step.mixing = static_cast<float>(std::min(p.mixing * dt / area, kMixingPart / stiffness));
     step.grip = static_cast<float>(p.grip);
-    step.pores = static_cast<float>(p.pores);
-    step.passing = static_cast<float>(1 - p.retention);
-    step.evaporation = static_cast<float>(p.evaporation * dt);
-    step.rim = static_cast<float>(p.rim_evaporation * dt / (texel_size * p.rim_depth));
-    step.rim_depth = static_cast<float>(p.rim_depth);
+    step.pores = static_cast<float>(p.pores.capacity);
+    step.passing = static_cast<float>(1 - p.pores.retention);
+    step.drying.evaporation = static_cast<float>(p.drying.evaporation * dt);
+    step.drying.rim = static_cast<float>(p.drying.rim_evaporation * dt / (texel_size * p.drying.rim_depth));
+    step.drying.rim_depth = static_cast<float>(p.drying.rim_depth);
     step.retained = static_cast<float>(p.retained);
     step.relief = static_cast<float>(p.levelling * dt / area);
     step.ridge = static_cast<float>(p.ridge);

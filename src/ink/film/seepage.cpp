@@ -41,7 +41,7 @@ bool Seepage::find(const TileList& tiles, std::span<const Sources> sources) {
         if (sources[at].liquid[0] || sources[at].liquid[1]) {
             for (const std::uint32_t i : list[at].around)
                 if (i != kNone) wanted[i] = 1;
-            for (const Beyond& other : list[at].others)
+            for (const Beyond& other : list[at].seams.others)
                 if (other.linked && other.place != kNone) wanted[other.place] = 1;
         }
     places_.clear();
@@ -76,9 +76,9 @@ void Seepage::open_tile(SeepTile& tile, const Active& active) const {
     tile.fed = !all_zero({tile.film, kTexels});
     tile.starts_dry = !tile.fed && all_zero({tile.start, kTexels});
     tile.links.clear();
-    for (std::size_t i = 0; i < active.links.size(); ++i) {
-        const atlas::SeamLink& l = active.links[i];
-        const std::uint32_t other = in_set(active.others[active.link_others[i]].place);
+    for (std::size_t i = 0; i < active.seams.links.size(); ++i) {
+        const atlas::SeamLink& l = active.seams.links[i];
+        const std::uint32_t other = in_set(active.seams.others[active.seams.link_others[i]].place);
         if (other != kNone)
             tile.links.push_back({other, l.texel, l.other_texel, l.weight, static_cast<float>(l.apart) / 64});
     }
@@ -111,9 +111,9 @@ bool Seepage::run_stages(const TileList& tiles, double flow, double soak, int n_
     });
     for (int j = 1; j <= n_stages; ++j) {
         const SeepStage stage{
-            .flow = static_cast<float>(flow * params_.pores / (kSaturationPower + 1) / part_of(n_stages)),
+            .flow = static_cast<float>(flow * params_.pores.capacity / (kSaturationPower + 1) / part_of(n_stages)),
             .soak = static_cast<float>(soak / part_of(n_stages)),
-            .per_pores = static_cast<float>(1 / params_.pores),
+            .per_pores = static_cast<float>(1 / params_.pores.capacity),
             .now = static_cast<float>(2 * j + 1) / static_cast<float>(j + 2),
             .before = static_cast<float>(j - 1) / static_cast<float>(j + 2),
             .from = (j + 1) % 2};
@@ -139,12 +139,12 @@ void Seepage::run_stage(const TileList& tiles, SeepTile& tile, int from, const S
         seep_over_link(l, plane_of(tile, from)[l.texel], plane_of(tiles_[l.other], from)[l.other_texel], stage);
         tile.beyond[l.texel] += l.through[static_cast<std::size_t>(1 - stage.from)];
     }
-    seep_stage(tile, s, *tiles.list[tile.place].geometry, stage);
+    seep_stage(tile, s, *tiles.list[tile.place].faces.geometry, stage);
 }
 
 double Seepage::fresh_step(const atlas::TexelMap& map) const {
     const double area = map.texel_size * map.texel_size;
-    return std::max(kFreshStep, params_.suction > 0 ? area / params_.suction : 0);
+    return std::max(kFreshStep, params_.pores.suction > 0 ? area / params_.pores.suction : 0);
 }
 
 double Seepage::solve(const TileList& tiles, std::span<const Sources> sources, double dt) {
@@ -152,17 +152,18 @@ double Seepage::solve(const TileList& tiles, std::span<const Sources> sources, d
     double stiffness = 4, w = 0, most = 0;
     for (const auto& t : tiles_) {
         const Active& active = tiles.list[t->place];
-        const auto own = static_cast<double>(active.stiffness);
+        const auto own = static_cast<double>(active.faces.stiffness);
         stiffness = std::max({stiffness, own, t->links.empty() ? 0 : own + kSeamPart});
         w = std::max(w, static_cast<double>(active.outcome.most_w));
-        most = std::max(most, static_cast<double>(active.outcome.most_s + active.outcome.most_w) / params_.pores);
+        most =
+            std::max(most, static_cast<double>(active.outcome.most_s + active.outcome.most_w) / params_.pores.capacity);
     }
     const double area = tiles.map.texel_size * tiles.map.texel_size,
-                 rate = params_.suction / (kFrontConstant * kFrontConstant) / area,
+                 rate = params_.pores.suction / (kFrontConstant * kFrontConstant) / area,
                  fastest = std::pow(std::min(most, 1.0), kSaturationPower),
-                 leaving = rate * stiffness * fastest + params_.absorbency * (1 + w / params_.pores);
+                 leaving = rate * stiffness * fastest + params_.pores.absorbency * (1 + w / params_.pores.capacity);
     if (dt * leaving > part_of(kMostStages)) dt = part_of(kMostStages) / leaving;
-    while (!run_stages(tiles, dt * rate, dt * params_.absorbency, stages_of(dt * leaving)) && dt * leaving > 1)
+    while (!run_stages(tiles, dt * rate, dt * params_.pores.absorbency, stages_of(dt * leaving)) && dt * leaving > 1)
         dt *= 0.5;
     tiles_.each(kGrain, [&](SeepTile& t) {
         if (t.dry) return;
@@ -183,7 +184,7 @@ void Seepage::smear_links(SeepTile& tile) const {
 }
 
 void Seepage::find_carried(SeepTile& tile, const TileList& tiles, const Sources& from) const {
-    const auto retention = static_cast<float>(params_.retention), grip = static_cast<float>(params_.grip);
+    const auto retention = static_cast<float>(params_.pores.retention), grip = static_cast<float>(params_.grip);
     Plane pigments{}, rate;
     for (const Plane* open : from.open)
         for (int i = 0; open && i < kTexels; ++i) pigments[i] += (*open)[i];
@@ -192,14 +193,14 @@ void Seepage::find_carried(SeepTile& tile, const TileList& tiles, const Sources&
                     held = retention * pigments[i] / (pigments[i] + kHalfHeld * total + kRounding);
         rate[i] = total > 0 ? (1 - held) / std::max(total, grip) : 0;
     }
-    limit_carried(tile, *tiles.list[tile.place].geometry, last_, rate);
+    limit_carried(tile, *tiles.list[tile.place].faces.geometry, last_, rate);
 }
 
 void Seepage::flow(std::uint32_t place, const TileList& tiles, std::span<const Sources> sources, int pigments,
                    Work& work, Crossing& crossing) const {
     const SeepTile& tile = *this->tile(place);
     const Active& active = tiles.list[place];
-    seepage_flow(work, tile, *active.geometry, last_, padded(tile, kCarried));
+    seepage_flow(work, tile, *active.faces.geometry, last_, padded(tile, kCarried));
     crossing.clear(tile.links.size(), pigments);
     for (const SeepLink& l : tile.links) {
         const SeepTile& other = tiles_[l.other];

@@ -49,7 +49,7 @@ struct SeepTile {
     bool fed = true;          ///< something is on the surface
     bool starts_dry = false;  ///< nothing is there before the step
     bool dry = false;         ///< nor came there up to now
-    float least = 0, most = 0;
+    float least = 0;          ///< film units, after the last stage
 };
 
 /// Factors of one stage.
@@ -62,7 +62,7 @@ struct SeepStage {
 };
 
 /// Computes one stage of a tile from `s`, its amounts with their border; `beyond` holds what links take away.
-/// Sets `least` and `most`.
+/// Sets `least`.
 void seep_stage(SeepTile& tile, const Field& s, const Geometry& g, const SeepStage& stage);
 /// Computes one stage of a link between texels with s0 and s1. Turned round, it has the same bits with another sign.
 void seep_over_link(SeepLink& link, float s0, float s1, const SeepStage& stage);

@@ -90,9 +90,6 @@ void sum_of_faces(float* out, const SeepFaces& f, const Geometry& g) {
     (g.gd ? add_up_all : add_up_sides)(out, f, g);
 }
 
-struct Bounds {
-    float least, most;
-};
 /// Draws in from the surface, by the saturations before the stage.
 TUFT_CLONES void stage_of_soaking(float* __restrict to, const float* __restrict from, const float* __restrict film,
                                   const float* __restrict s, const SeepStage& stage) {
@@ -105,19 +102,19 @@ TUFT_CLONES void stage_of_soaking(float* __restrict to, const float* __restrict 
         }
 }
 
-TUFT_CLONES Bounds take_amounts(float* __restrict s, const float* __restrict start, const float* __restrict soaked,
-                                const float* __restrict sum, const float* __restrict beyond,
-                                const float* __restrict inverse) {
-    alignas(64) float least[kLanes] = {}, most[kLanes] = {};
+/// Returns the least amount, at most 0.
+TUFT_CLONES float take_amounts(float* __restrict s, const float* __restrict start, const float* __restrict soaked,
+                               const float* __restrict sum, const float* __restrict beyond,
+                               const float* __restrict inverse) {
+    alignas(64) float least[kLanes] = {};
     for (int i = 0; i < kTexels; i += kLanes)
         for (int x = 0; x < kLanes; ++x) {
             const float v = (start[i + x] + soaked[i + x]) + (sum[i + x] - beyond[i + x]) * inverse[i + x];
             s[i + x] = v;
             least[x] = smaller(least[x], v);
-            most[x] = larger(most[x], v);
         }
-    Bounds out{least[0], most[0]};
-    for (int x = 0; x < kLanes; ++x) out.least = smaller(out.least, least[x]), out.most = larger(out.most, most[x]);
+    float out = least[0];
+    for (int x = 0; x < kLanes; ++x) out = smaller(out, least[x]);
     return out;
 }
 
@@ -185,10 +182,8 @@ void seep_stage(SeepTile& tile, const Field& s, const Geometry& g, const SeepSta
     alignas(64) std::array<float, kTexels> sum;
     sum_of_faces(sum.data(), tile.faces[to], g);
     if (tile.fed) stage_of_soaking(tile.soaked[to].data(), tile.soaked[from].data(), tile.film, s.data(), stage);
-    const Bounds bounds = take_amounts(tile.s[to].data(), tile.start, tile.soaked[to].data(), sum.data(),
-                                       tile.beyond.data(), g.inverse.data());
-    tile.least = bounds.least;
-    tile.most = bounds.most;
+    tile.least = take_amounts(tile.s[to].data(), tile.start, tile.soaked[to].data(), sum.data(), tile.beyond.data(),
+                              g.inverse.data());
 }
 
 void seep_over_link(SeepLink& link, float s0, float s1, const SeepStage& stage) {

@@ -48,7 +48,7 @@ void set_liquid(TensionTile& tile, const Active& active, std::span<const Sources
 
 /// Place in the list of the tile beyond a link of `active`.
 std::uint32_t place_beyond(const Active& active, std::size_t link) {
-    return active.others[active.link_others[link]].place;
+    return active.seams.others[active.seams.link_others[link]].place;
 }
 
 void set_coarse_grids(TensionTile& t) {
@@ -82,10 +82,10 @@ void Tension::each(Fn&& fn) {
 }
 
 void Tension::start(const FilmParams& params, const atlas::TexelMap& map) {
-    if (steep_.empty() || params.down != params_.down) steep_.assign(map.n_slots(), -1);
+    if (steep_.empty() || params.weight.down != params_.weight.down) steep_.assign(map.n_slots(), -1);
     params_ = params;
-    held_ = static_cast<float>(std::max(params.held, params.threshold));
-    held_on_steep_ = std::max(held_, static_cast<float>(params.trail));
+    held_ = static_cast<float>(std::max(params.ripples.held, params.threshold));
+    held_on_steep_ = std::max(held_, static_cast<float>(params.weight.trail));
 }
 
 void Tension::look_at(const atlas::TexelMap& map, std::uint32_t slot) {
@@ -93,7 +93,7 @@ void Tension::look_at(const atlas::TexelMap& map, std::uint32_t slot) {
     bool any = false;
     for (int t = 0; t < kTexels && !any; ++t)
         any = map.tiles[slot].cluster[t] != atlas::kNoCluster &&
-              glm::length(glm::cross(Vec3(map.normal(slot, t)), params_.down)) > kSteep;
+              glm::length(glm::cross(Vec3(map.normal(slot, t)), params_.weight.down)) > kSteep;
     steep_[slot] = any;
 }
 
@@ -104,7 +104,7 @@ bool Tension::find(const TileList& tiles, std::span<const std::unique_ptr<Plane>
     const auto each_beside = [&](const Active& tile, auto&& visit) {
         for (const std::uint32_t i : tile.around)
             if (i != kNone) visit(i);
-        for (const Beyond& other : tile.others)
+        for (const Beyond& other : tile.seams.others)
             if (other.linked && other.place != kNone) visit(other.place);
     };
     for (std::size_t at = 0; at < list.size(); ++at) {
@@ -159,7 +159,7 @@ void Tension::begin(const TileList& tiles, std::span<const Sources> sources, flo
     });
     each([&](TensionTile& t) {
         take_mobility(t);
-        set_faces(t, *tiles.list[t.place].geometry);
+        set_faces(t, *tiles.list[t.place].faces.geometry);
         link_over_seams(t, tiles.list[t.place]);
         set_coarse_grids(t);
     });
@@ -173,9 +173,9 @@ void Tension::take_tiles(const TileList& tiles) {
 void Tension::open_tile(TensionTile& t, const Active& active, std::span<const Sources> sources, float mobility) const {
     for (std::size_t i = 0; i < 9; ++i) t.around[i] = in_set(active.around[i]);
     set_liquid(t, active, sources);
-    open_texels(t, *active.geometry, mobility);
-    for (std::size_t i = 0; i < active.links.size(); ++i) {
-        const atlas::SeamLink& l = active.links[i];
+    open_texels(t, *active.faces.geometry, mobility);
+    for (std::size_t i = 0; i < active.seams.links.size(); ++i) {
+        const atlas::SeamLink& l = active.seams.links[i];
         const std::uint32_t at = place_beyond(active, i);
         const Plane* w = at == kNone ? nullptr : sources[at].liquid[0];
         if (!w || !((*w)[l.other_texel] > t.held)) t.mobility[static_cast<std::size_t>(field_of(l.texel))] = 0;
@@ -191,18 +191,18 @@ void Tension::take_mobility(TensionTile& t) const {
 
 void Tension::close_rims(TensionTile& t, const Active& active) const {
     take_mobility(t);
-    hold_rims(t, *active.geometry);
-    for (std::size_t i = 0; i < active.links.size(); ++i) {
+    hold_rims(t, *active.faces.geometry);
+    for (std::size_t i = 0; i < active.seams.links.size(); ++i) {
         const std::uint32_t other = in_set(place_beyond(active, i));
-        const auto there = static_cast<std::size_t>(field_of(active.links[i].other_texel));
-        if (other != kNone && !(tiles_[other].mobility[there] > 0)) t.inner[active.links[i].texel] = 0;
+        const auto there = static_cast<std::size_t>(field_of(active.seams.links[i].other_texel));
+        if (other != kNone && !(tiles_[other].mobility[there] > 0)) t.inner[active.seams.links[i].texel] = 0;
     }
 }
 
 void Tension::link_over_seams(TensionTile& t, const Active& active) const {
     t.links.clear();
-    for (std::size_t i = 0; i < active.links.size(); ++i) {
-        const atlas::SeamLink& l = active.links[i];
+    for (std::size_t i = 0; i < active.seams.links.size(); ++i) {
+        const atlas::SeamLink& l = active.seams.links[i];
         const std::uint32_t other = in_set(place_beyond(active, i));
         if (other == kNone) continue;
         const auto here = static_cast<std::size_t>(field_of(l.texel)),
@@ -210,7 +210,7 @@ void Tension::link_over_seams(TensionTile& t, const Active& active) const {
         const float m0 = t.mobility[here], m1 = tiles_[other].mobility[there];
         if (!(m0 > 0 && m1 > 0)) continue;
         t.links.push_back(
-            {other, l.texel, l.other_texel, l.weight, l.weight * (0.5f * (m0 + m1)), active.link_areas[i]});
+            {other, l.texel, l.other_texel, l.weight, l.weight * (0.5f * (m0 + m1)), active.seams.link_areas[i]});
         t.grid.e[l.texel] += l.weight * (t.w[here] - tiles_[other].w[there]) * t.grid.inverse[l.texel];
     }
 }
@@ -268,8 +268,8 @@ void Tension::cycle() {
 Tension::Solved Tension::solve(const TileList& tiles, std::span<const Sources> sources, double dt) {
     const double area = tiles.map.texel_size * tiles.map.texel_size;
     begin(tiles, sources,
-          static_cast<float>(params_.tension / (3 * params_.viscosity) * dt * (kFilmUnit * kFilmUnit * kFilmUnit) /
-                             (area * area)));
+          static_cast<float>(params_.ripples.tension / (3 * params_.ripples.viscosity) * dt *
+                             (kFilmUnit * kFilmUnit * kFilmUnit) / (area * area)));
     const auto square = [](const TensionTile& t, auto&& curvature) {
         double sum = 0;
         for (int i = 0; i < kTexels; ++i) {

@@ -50,28 +50,24 @@ Model make_palette() {
 }
 
 ink::Substrate palette_substrate() {
-    return {.name = "palette",
-            .title = "Palette of glazed porcelain",
-            .reflectance = {0.86f, 0.86f, 0.85f},
-            .roughness = 0.1f,
-            .capacity = 200,
-            .interface = 1,
-            .relief = 1e-6f,
-            .relief_length = 40e-6f,
-            .absorbency = 0,
-            .pores = 0,
-            .diffusion = 1e-10f,
-            .threshold = 0.1f,
-            .edge = 0,
-            .evaporation = 0};
+    return {
+        .name = "palette",
+        .title = "Palette of glazed porcelain",
+        .reflectance = {0.86f, 0.86f, 0.85f},
+        .roughness = 0.1f,
+        .capacity = 200,
+        .interface = 1,
+        .relief = 1e-6f,
+        .relief_length = 40e-6f,
+        .wetting = {.absorbency = 0, .pores = 0, .diffusion = 1e-10f, .threshold = 0.1f, .edge = 0, .evaporation = 0}};
 }
 
 ink::FilmParams palette_film() {
     ink::FilmParams params = ink::film_params(palette_substrate(), Vec3{0});
     params.pin = kPoolEdge;
-    params.evaporation = 0;
-    params.rim_evaporation = 0;
-    params.stain = 0;
+    params.drying.evaporation = 0;
+    params.drying.rim_evaporation = 0;
+    params.drying.stain = 0;
     return params;
 }
 

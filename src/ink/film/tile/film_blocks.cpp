@@ -201,7 +201,7 @@ TUFT_CLONES void spread(Work& work, const Fluxes& f) {
 
 void film_block_flow(Work& work, const Geometry& g, const Beside& beside, const Step& p) {
     const Fluxes fluxes =
-        fluxes_of(means_of(work.w, beside), g, {p.flow, p.threshold, p.levelling, p.retained, p.most});
+        fluxes_of(means_of(work.w, beside), g, {p.flow, p.threshold, p.levelling, p.retained, p.limit.most});
     if (fluxes.any) spread(work, fluxes);
 }
 

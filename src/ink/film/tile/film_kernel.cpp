@@ -61,12 +61,12 @@ struct Law {
     /// Conductance g times how much flows.
     static TUFT_INLINE float limited_flow(float g, float flow, float most, const Step& p) {
         if constexpr (kLimited) return smaller(g * flow, most);
-        return g * smaller(flow, p.limit);
+        return g * smaller(flow, p.limit.flow);
     }
 
     /// At most so much of what a texel has leaves it through a face.
     static TUFT_INLINE float most_of(const End& e0, const End& e1, float share, const Step& p) {
-        return kLimited ? share * p.most * static_cast<float>(smaller_of(e0.flow_area, e1.flow_area)) : 0;
+        return kLimited ? share * p.limit.most * static_cast<float>(smaller_of(e0.flow_area, e1.flow_area)) : 0;
     }
 
     /// Flux of liquid on the surface between two texels, film units · mean area.
@@ -86,7 +86,8 @@ struct Law {
         if constexpr (!kRelief) return plain;
         // Down the liquid's own surface, and no more than its upper end has to give.
         const float drop = (e0.w + e0.z) - (e1.w + e1.z), over = drop > 0 ? over0 : over1;
-        const float run = smaller((0.5f * p.flow) * above + p.relief * over, p.limit) * drop, all = p.limit * over;
+        const float run = smaller((0.5f * p.flow) * above + p.relief * over, p.limit.flow) * drop,
+                    all = p.limit.flow * over;
         float down = g * larger(smaller(run, all), -all);
         if constexpr (kLimited) down = larger(smaller(down, most * over), -(most * over));
         return e0.z + e1.z > 0 ? down : plain;
@@ -294,7 +295,7 @@ struct Settled {
 TUFT_CLONES Settled settle(float* __restrict w, float* __restrict s, const Work& o, const float* __restrict inverse,
                            const float* __restrict noise, const Step& step) {
     const float pores = step.pores;
-    const float evaporation = step.evaporation, rim = step.rim;
+    const float evaporation = step.drying.evaporation, rim = step.drying.rim;
     alignas(64) float most_w[kLanes] = {}, most_s[kLanes] = {}, air[kLanes] = {}, least[kLanes];
     for (float& l : least) l = std::numeric_limits<float>::max();
     for (int row = 0; row < kSide; ++row) {
@@ -404,12 +405,13 @@ TUFT_INLINE void seam_faces(SeamLanes& l, const Step& step) {
     for (int x = 0; x < kLanes; ++x) {
         const End e0 = end_of(l.w[0][x], l.s[0][x], l.grain[0][x], l.z[0][x], p),
                   e1 = end_of(l.w[1][x], l.s[1][x], l.grain[1][x], l.z[1][x], p);
-        const float g = l.weight[x], most = p.most_of_link * l.flow_area[x], w = Here::film_flux(g, e0, e1, most, p);
+        const float g = l.weight[x], most = p.limit.most_of_link * l.flow_area[x],
+                    w = Here::film_flux(g, e0, e1, most, p);
         const Carriers c = carriers(g, w, e0, e1, p);
         // Nearer cells' middles lie farther apart than their texels, by whose distance their amounts differ: they mix
         // more, by no more than what could flow.
         const float near = smaller(larger(1 / larger(l.apart[x] * l.apart[x], kLeast), 1), kMostNear) - 1;
-        const float more = 0.5f * smaller(near * std::abs(w), p.limit * g * smaller(e0.t, e1.t));
+        const float more = 0.5f * smaller(near * std::abs(w), p.limit.flow * g * smaller(e0.t, e1.t));
         l.through[x] = w;
         l.a[x] = (c.a + more) * e0.rate;
         l.b[x] = (c.b - more) * e1.rate;
@@ -444,15 +446,15 @@ void gather_field(Field& field, const std::array<const float*, 9>& planes) {
 }
 
 bool fluxes(Work& work, const Geometry& g, const Step& step) {
-    const float depth = step.rim > 0 ? step.rim_depth : 0, least = levels(work, step);
+    const float depth = step.drying.rim > 0 ? step.drying.rim_depth : 0, least = levels(work, step);
     const Least rims = least > 0 && least >= depth ? Least{} : find_rims(work, g, depth);
-    if (step.most > 0)
+    if (step.limit.most > 0)
         (work.on_relief ? limited_faces_on_relief : rims.dry ? limited_faces_dry : limited_faces_wet)(work, g, step);
     else
         (work.on_relief ? faces_on_relief : rims.dry ? faces_dry : faces_wet)(work, g, step);
     work.ds.fill(0);
     if (rims.thin)
-        slope_to_rims(work.rim_slope.data(), work.total.data(), g, step.rim_depth);
+        slope_to_rims(work.rim_slope.data(), work.total.data(), g, step.drying.rim_depth);
     else if (work.sloping)
         work.rim_slope.fill(0);
     work.sloping = rims.thin;
@@ -509,7 +511,7 @@ const float* dither(std::uint64_t seed) {
 }
 
 void seam_fluxes(std::span<SeamLanes> lanes, const Step& step) {
-    for (SeamLanes& l : lanes) (step.most > 0 ? sixteen_limited_seams : sixteen_seams)(l, step);
+    for (SeamLanes& l : lanes) (step.limit.most > 0 ? sixteen_limited_seams : sixteen_seams)(l, step);
 }
 
 }  // namespace tuft::ink::wet

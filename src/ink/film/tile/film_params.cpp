@@ -14,11 +14,12 @@ constexpr double kFilmHeight = 10e-6;             // metres: relief over which f
 constexpr double kRimLength = 1e-3;               // metres: what the rim of a wet spot adds to its area, as for drying
 
 /// Without a radius of its pores, `diffusion` is that of full pores.
-double suction_of(const Substrate& substrate, const FilmParams& p) {
-    if (substrate.pore_radius > 0)
-        return washburn(static_cast<double>(substrate.pore_radius),
-                        static_cast<double>(substrate.contact_angle) * std::numbers::pi / 180, p.tension, p.viscosity);
-    return kFrontConstant * kFrontConstant * p.mobility * p.pores;
+double suction_of(const Wetting& wetting, const FilmParams& p) {
+    if (wetting.pore_radius > 0)
+        return washburn(static_cast<double>(wetting.pore_radius),
+                        static_cast<double>(wetting.contact_angle) * std::numbers::pi / 180, p.ripples.tension,
+                        p.ripples.viscosity);
+    return kFrontConstant * kFrontConstant * p.mobility * p.pores.capacity;
 }
 
 }  // namespace
@@ -28,23 +29,24 @@ double washburn(double pore_radius, double contact_angle, double tension, double
 }
 
 FilmParams film_params(const Substrate& substrate, const Vec3& down) {
+    const Wetting& wetting = substrate.wetting;
     FilmParams p;
-    p.mobility = static_cast<double>(substrate.diffusion);
+    p.mobility = static_cast<double>(wetting.diffusion);
     // Wet in wet, surface tension stirs more than molecules move: as wide as water itself spreads.
     p.mixing = std::max(kLeastMixing, kStirring * p.mobility);
-    p.threshold = static_cast<double>(substrate.threshold);
-    p.pin = 2 * static_cast<double>(substrate.edge);
-    p.absorbency = static_cast<double>(substrate.absorbency);
-    p.pores = static_cast<double>(substrate.pores);
-    p.suction = suction_of(substrate, p);
-    p.retention = static_cast<double>(substrate.retention);
-    p.evaporation = static_cast<double>(substrate.evaporation);
-    p.rim_evaporation = p.evaporation * static_cast<double>(substrate.edge) * kRimLength;
-    p.stain = p.pores / (p.pores + 2);
-    if (substrate.pores > 0)
-        p.unevenness = (kOfClouds + kOfFibres * p.retention) * static_cast<double>(substrate.relief) /
+    p.threshold = static_cast<double>(wetting.threshold);
+    p.pin = 2 * static_cast<double>(wetting.edge);
+    p.pores.absorbency = static_cast<double>(wetting.absorbency);
+    p.pores.capacity = static_cast<double>(wetting.pores);
+    p.pores.suction = suction_of(wetting, p);
+    p.pores.retention = static_cast<double>(wetting.retention);
+    p.drying.evaporation = static_cast<double>(wetting.evaporation);
+    p.drying.rim_evaporation = p.drying.evaporation * static_cast<double>(wetting.edge) * kRimLength;
+    p.drying.stain = p.pores.capacity / (p.pores.capacity + 2);
+    if (wetting.pores > 0)
+        p.unevenness = (kOfClouds + kOfFibres * p.pores.retention) * static_cast<double>(substrate.relief) /
                        (static_cast<double>(substrate.relief) + kFilmHeight);
-    if (glm::length(down) > 0) p.down = glm::normalize(down);
+    if (glm::length(down) > 0) p.weight.down = glm::normalize(down);
     return p;
 }
 

@@ -92,21 +92,31 @@ struct SplitGeometry {
 /// that slopes may be taken over them.
 std::unique_ptr<SplitGeometry> split(const Geometry& g, const std::array<bool, 9>& in_zone);
 
+/// Limits of the flow in one step, so that no amount gets negative.
+struct FlowLimits {
+    float flow = 0;          ///< of flow × thickness
+    float most = 0;          ///< of flow × thickness × conductance over the module at the face; 0: `flow` holds
+    float most_of_link = 0;  ///< the same for links
+};
+
+/// What dries in one step.
+struct StepDrying {
+    float evaporation = 0;  ///< film units
+    float rim = 0;          ///< film units more, per film unit of slope
+    float rim_depth = 0;    ///< film units: rims are thinner than this
+};
+
 /// FilmParams for one step, in texels: rates times the step's length.
 struct Step {
     float flow = 0;       ///< D dt / A per film unit
     float levelling = 0;  ///< L dt / A per film unit above `retained`
-    float limit = 0;      ///< of flow × thickness, so that nothing gets negative
-    float most = 0;  ///< of flow × thickness × conductance over the module at the face, instead; 0: `limit` holds
-    float most_of_link = 0;  ///< the same for links
+    FlowLimits limit;
     float threshold = 0, pin = 0;
     float mixing = 0;  ///< D_p dt / A
     float grip = 0;
     float pores = 0;
-    float passing = 1;      ///< part of the liquid in the pores in which pigments mix
-    float evaporation = 0;  ///< film units
-    float rim = 0;          ///< film units more, per film unit of slope
-    float rim_depth = 0;
+    float passing = 1;  ///< part of the liquid in the pores in which pigments mix
+    StepDrying drying;
     float retained = 0;
     float relief = 0;       ///< L dt / A, on relief
     float ridge = 0;        ///< film units that stay on relief
