@@ -5,8 +5,8 @@
 #include <memory>
 
 /// \file
-/// A sequence of steps that another thread performs ahead of the one that needs their results. `stroke` bends the hair
-/// of a stroke ahead of its ink by it.
+/// A sequence of steps that a thread performs before another one needs their results. `stroke` bends the hair of a
+/// stroke ahead of its ink by it.
 namespace tuft {
 
 /// Steps 0, 1, … n − 1, each of which may use what those before it left. Calls of `step` come in order and one at a

@@ -75,7 +75,7 @@ struct Stack {
     std::vector<LayerView> layers;
     /// Base colours below the layers in place of the substrate's reflectance; null or empty: the substrate.
     const BaseColour* base_colour = nullptr;
-    /// Substrates of the model's parts in place of the one that a call states; null: that one everywhere. A part with a
+    /// Substrates of the model's parts in place of the call's; null: the call's everywhere. A part with a
     /// substrate of its own has no base colour.
     const SubstrateMap* substrates = nullptr;
 
@@ -83,7 +83,7 @@ struct Stack {
     explicit Stack(std::vector<LayerView> views) : layers(std::move(views)) {}
 
     bool has_base_colour() const { return base_colour && !base_colour->empty(); }
-    /// Whether a texel of the tile has another substrate than the one that a call states.
+    /// Whether a texel of the tile has another substrate than the call's.
     bool differs(std::uint32_t slot) const { return substrates && substrates->differs(slot); }
     /// Whether some canvas holds ink or liquid on a tile.
     bool touched(std::uint32_t slot) const;

@@ -115,7 +115,7 @@ double area_of(const RawMesh& mesh, const Component& c) {
     return area;
 }
 
-/// Whether a component with these exposures is inside out; nothing where that cannot be told.
+/// Whether a component with these exposures is inside out; nothing where they do not say.
 std::optional<bool> is_inside_out(const Exposure& seen) {
     constexpr double kFarMore = 2.5, kLeast = 0.05;
     if (std::max(seen.front, seen.back) < kLeast) return std::nullopt;

@@ -102,8 +102,8 @@ class Document {
     /// the same.
     void paint(std::vector<JournalEntry> entries, const EntryDoneFn& done, const ProgressFn& progress = {});
 
-    /// Throws the `Error` of `paint` for a stroke of the model whose brush is too wide for its texels, or which is at
-    /// least twice as long as one that is painted; before anything is painted, and without mapping it to the surface.
+    /// Throws the `Error` of `paint` for a stroke of the model that is too large: its brush is too wide for the texels,
+    /// or its path is at least twice the longest that is painted. Paints nothing and maps nothing to the surface.
     void check_size(const JournalEntry& entry);
 
     /// The same in pieces for a hand in space: `begin`, any number of `extend`, then `end` or `cancel`, which takes the

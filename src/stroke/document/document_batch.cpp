@@ -88,7 +88,7 @@ BatchOrder order_by_tiles(const Strokes& batch, std::size_t n_slots) {
     return order;
 }
 
-/// Progress of strokes painted at the same time. Threads report in turn; one that finds another reporting goes on.
+/// Progress of strokes painted at the same time. Threads report in turn. A thread does not wait while another reports.
 class BatchProgress {
   public:
     BatchProgress(std::size_t strokes, const ProgressFn& report) : done_(strokes), report_(report) {}

@@ -26,13 +26,13 @@ std::uint32_t last_mask_on(std::span<const JournalEntry> entries, std::uint32_t 
 /// stored after it.
 bool fits(std::span<const JournalEntry> entries, std::uint64_t id);
 
-/// Sets the layer of each stroke and fill to the one that its `names` give, else to the one called `name`; empty: to
-/// its own. Inserts an entry that adds the layer on top before the first one that needs it.
+/// Sets the layer of each stroke and fill by its `names`, else to the layer called `name`; an empty `name` changes
+/// none. Inserts an entry that adds a missing layer on top before the first stroke or fill that needs it.
 std::vector<JournalEntry> onto_named_layers(std::vector<JournalEntry> entries, LayerTable table,
                                             const std::string& name = {});
 
-/// Sets the mask of each stroke and fill to the one that its `names` give, else to the one called `name`. Throws
-/// `Error` for a mask that does not exist.
+/// Sets the mask of each stroke and fill by its `names`, else to the mask called `name`. Throws `Error` for a mask that
+/// does not exist.
 void keep_to_named_masks(std::vector<JournalEntry>& entries, const MaskTable& table, const std::string& name = {});
 
 }  // namespace tuft::stroke

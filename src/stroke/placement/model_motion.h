@@ -67,7 +67,7 @@ struct ModelChange {
     std::vector<PartMotion> parts;  ///< in the order of the former model's groups
 
     bool none() const { return !whole && parts.empty(); }
-    /// Returns the motion of a group; that of the whole model for one that did not move otherwise.
+    /// Returns the motion of a group: its own where it differs from the whole model's, else the model's.
     ModelMotion of(const std::string& group) const;
 };
 

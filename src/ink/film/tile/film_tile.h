@@ -28,7 +28,7 @@ struct alignas(64) Field : std::array<float, kField> {};
 /// Unit of 16-bit conductances: half the memory, and memory bounds the speed of a step. 1 is exact.
 inline constexpr float kConductanceUnit = 0x1p-14f, kDiagonalUnit = 0x1p-13f;
 
-/// Room at faces, as `Geometry` holds it.
+/// Unit of the 16-bit areas of `Geometry::flow_area`.
 inline constexpr float kFlowAreaUnit = 0x1p-14f;
 
 inline constexpr double kGrainLength = 1.2e-3;  ///< metres over which the pin of a place varies

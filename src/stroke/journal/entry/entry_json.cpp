@@ -107,9 +107,9 @@ json json_of(const PaintStroke& stroke) {
     put_target(j, stroke.layer, stroke.mask);
     if (stroke.erases()) j["tool"] = "eraser";
     if (stroke.trace.stencil.empty()) return j;
-    json& tape = j["tape"] = json::array();
+    json& edges = j["tape"] = json::array();
     for (const StencilEdge& e : stroke.trace.stencil)
-        for (const double x : {e.from.x, e.from.y, e.to.x, e.to.y}) tape.push_back(x);
+        for (const double x : {e.from.x, e.from.y, e.to.x, e.to.y}) edges.push_back(x);
     return j;
 }
 
@@ -149,8 +149,8 @@ EntryContent content_of(EntryColumns& columns, EntryKind kind, const json& j) {
                                .mask = table_id_of(j, "mask", 0),
                                .settings = settings,
                                .names = {}};
-            const auto tape = j.find("tape");
-            stroke.trace.stencil = tape == j.end() ? std::vector<StencilEdge>{} : stencil_of(*tape);
+            const auto edges = j.find("tape");
+            stroke.trace.stencil = edges == j.end() ? std::vector<StencilEdge>{} : stencil_of(*edges);
             return stroke;
         }
         case EntryKind::dip:
