@@ -237,6 +237,41 @@ void TileList::begin(const Canvas& canvas) {
     spread();
 }
 
+/// Sets what lies beyond the seams of a tile, but for `others`.
+void TileList::use_seams(Active& tile) const {
+    const std::uint32_t first = seams.start[tile.slot], first_tap = seams.tap_start[tile.slot];
+    ActiveSeams& own = tile.seams;
+    own.links = links_of(tile.slot);
+    own.link_others = std::span(over_seams_.of_link).subspan(first, own.links.size());
+    own.link_areas = std::span(link_areas_).subspan(first, own.links.size());
+    own.taps = std::span(seams.taps).subspan(first_tap, seams.tap_start[tile.slot + 1] - first_tap);
+}
+
+/// Sets the places of the tiles round each tile of the list and over its seams.
+void TileList::find_neighbours() {
+    for (Active& tile : list) {
+        tile.around = around(tile.slot);
+        tile.absent = 0;
+        for (int i = 0; i < 9; ++i) {
+            std::uint32_t& at = tile.around[i];
+            if (at == kNone) continue;
+            at = scratch_.place[at];
+            if (at == kNone) tile.absent |= 1u << i;
+        }
+    }
+    others_.clear();
+    for (const Active& tile : list)
+        for (std::uint32_t i = over_seams_.start[tile.slot]; i < over_seams_.start[tile.slot + 1]; ++i)
+            others_.push_back({over_seams_.tiles[i].slot, scratch_.place[over_seams_.tiles[i].slot],
+                               over_seams_.tiles[i].linked, over_seams_.tiles[i].lines});
+    std::size_t from = 0;
+    for (Active& tile : list) {
+        const std::size_t n = over_seams_.start[tile.slot + 1] - over_seams_.start[tile.slot];
+        tile.seams.others = std::span<const Beyond>(others_).subspan(from, n);
+        from += n;
+    }
+}
+
 void TileList::spread() {
     std::vector<std::uint32_t> wanted;
     const auto want = [&](std::uint32_t slot) {
@@ -259,39 +294,12 @@ void TileList::spread() {
         while (k < list.size() && list[k].slot < wanted[i]) ++k;
         if (k < list.size() && list[k].slot == wanted[i]) next[i] = std::move(list[k]);
         next[i].slot = wanted[i];
-        next[i].seams.links = links_of(wanted[i]);
-        next[i].seams.link_others = std::span<const std::uint16_t>(over_seams_.of_link)
-                                        .subspan(seams.start[wanted[i]], next[i].seams.links.size());
-        next[i].seams.link_areas =
-            std::span<const float>(link_areas_).subspan(seams.start[wanted[i]], next[i].seams.links.size());
-        next[i].seams.taps =
-            std::span(seams.taps)
-                .subspan(seams.tap_start[wanted[i]], seams.tap_start[wanted[i] + 1] - seams.tap_start[wanted[i]]);
+        use_seams(next[i]);
         scratch_.place[wanted[i]] = static_cast<std::uint32_t>(i);
         scratch_.mark[wanted[i]] = 0;
     }
     list = std::move(next);
-    for (Active& tile : list) {
-        tile.around = around(tile.slot);
-        tile.absent = 0;
-        for (int i = 0; i < 9; ++i) {
-            std::uint32_t& at = tile.around[i];
-            if (at == kNone) continue;
-            at = scratch_.place[at];
-            if (at == kNone) tile.absent |= 1u << i;
-        }
-    }
-    others_.clear();
-    for (const Active& tile : list)
-        for (std::uint32_t i = over_seams_.start[tile.slot]; i < over_seams_.start[tile.slot + 1]; ++i)
-            others_.push_back({over_seams_.tiles[i].slot, scratch_.place[over_seams_.tiles[i].slot],
-                               over_seams_.tiles[i].linked, over_seams_.tiles[i].lines});
-    std::size_t from = 0;
-    for (Active& tile : list) {
-        const std::size_t n = over_seams_.start[tile.slot + 1] - over_seams_.start[tile.slot];
-        tile.seams.others = std::span<const Beyond>(others_).subspan(from, n);
-        from += n;
-    }
+    find_neighbours();
     for (const Active& tile : list) scratch_.place[tile.slot] = kNone;
     readers = std::make_unique<std::atomic<std::uint32_t>[]>(list.size());
     n_readers.assign(list.size(), 0);

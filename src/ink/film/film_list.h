@@ -160,6 +160,8 @@ struct TileList {
     Scratch scratch_;
 
     void find_near();
+    void use_seams(Active& tile) const;
+    void find_neighbours();
     void search_again();
     void limit_links();
     void find_link_areas();
