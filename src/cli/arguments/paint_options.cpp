@@ -235,10 +235,9 @@ void add_paint_options(CLI::App* p, Paint& paint) {
 
 namespace {
 constexpr double kMostPicture = 16384;  // pixels along a side
-}
 
-void add_write_options(CLI::App* w, Write& write) {
-    w->add_option("--text", write.text, "what is written; \\n begins a line or a column")->type_name("TEXT");
+/// A character copied from a picture.
+void add_copy_options(CLI::App* w, Write& write) {
     auto* like =
         w->add_option("--like", write.like,
                       "copy the character of a picture instead: a photo, a scan or a rubbing (--text: its name)");
@@ -259,6 +258,29 @@ void add_write_options(CLI::App* w, Write& write) {
         ->check(CLI::Range(-0.9, 0.9));
     w->add_option("--numbered", write.numbered, "write a drawing of the pieces of the copy, numbered: .svg")
         ->needs(like);
+}
+
+/// Takes a value of --size: a character's side in millimetres, or the size of a picture.
+void take_size(Write& write, const std::string& text) {
+    const auto picture = numbers(text, 'x', 2, kMostPicture);
+    const auto side = number_of(text);
+    if (picture.size() == 2 && picture[0] >= 16 && picture[1] >= 16) {
+        write.view.width = static_cast<int>(picture[0]);
+        write.view.height = static_cast<int>(picture[1]);
+    } else if (side && *side >= kLeastTexelMm && *side <= kFarthestMm) {
+        write.size_mm = *side;
+    } else {
+        throw CLI::ValidationError("--size", "'" + excerpt(text) +
+                                                 "' is neither a character's side in millimetres nor the "
+                                                 "size of a picture, such as 1280x720");
+    }
+}
+
+}  // namespace
+
+void add_write_options(CLI::App* w, Write& write) {
+    w->add_option("--text", write.text, "what is written; \\n begins a line or a column")->type_name("TEXT");
+    add_copy_options(w, write);
     w->add_option("--glyphs", write.glyphs,
                   "where the characters' strokes come from before the bundled ones: a folder of KanjiVG (SVG), of "
                   "hanzi-writer-data or Make Me a Hanzi (JSON), a single-line SVG font, or a font file")
@@ -282,21 +304,7 @@ void add_write_options(CLI::App* w, Write& write) {
         "brush for all strokes ('tuft brush' lists them; default: the style's, in the size that suits the text)");
     for (const char* other : {"--along", "--repeat", "--size"}) w->remove_option(w->get_option(other));
     w->add_option_function<std::string>(
-         "--size",
-         [&write](const std::string& text) {
-             const auto picture = numbers(text, 'x', 2, kMostPicture);
-             const auto side = number_of(text);
-             if (picture.size() == 2 && picture[0] >= 16 && picture[1] >= 16) {
-                 write.view.width = static_cast<int>(picture[0]);
-                 write.view.height = static_cast<int>(picture[1]);
-             } else if (side && *side >= kLeastTexelMm && *side <= kFarthestMm) {
-                 write.size_mm = *side;
-             } else {
-                 throw CLI::ValidationError("--size", "'" + excerpt(text) +
-                                                          "' is neither a character's side in millimetres nor the "
-                                                          "size of a picture, such as 1280x720");
-             }
-         },
+         "--size", [&write](const std::string& text) { take_size(write, text); },
          "side of a character's square in millimetres (default: as large as the place allows, or by --place-width); "
          "WIDTHxHEIGHT: size of the picture")
         ->type_name("MM|WxH")
