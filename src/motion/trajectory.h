@@ -25,6 +25,7 @@ struct Holder {
     double length = 0.15;   ///< metres
 };
 
+/// What the tool does at a waypoint.
 enum class MoveKind {
     approach,  ///< along the axis, from `clearance` above the surface to the first pose
     stroke,

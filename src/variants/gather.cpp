@@ -19,8 +19,8 @@ constexpr std::size_t kMostOnSheet = 60;
 constexpr int kMargin = 10, kLettering = 40;  // pixels round a picture, and under it for its name
 constexpr std::size_t kMostPixels = std::size_t{kLargestPicture} * std::size_t{kLargestPicture};
 
-std::string word_of(State state) {
-    return state == State::done ? "done" : state == State::failed ? "failed" : "open";
+std::string word_of(TaskState state) {
+    return state == TaskState::done ? "done" : state == TaskState::failed ? "failed" : "open";
 }
 
 std::string csv_field(const std::string& text) {
@@ -80,12 +80,12 @@ std::vector<Row> gather(const Jobs& jobs) {
         row.index = i;
         row.task = jobs.task(i);
         row.state = jobs.state(i);
-        if (row.state == State::failed) row.fault = jobs.failure(i);
-        if (row.state != State::done) continue;
+        if (row.state == TaskState::failed) row.fault = jobs.failure(i);
+        if (row.state != TaskState::done) continue;
         try {
             row.figures = jobs.figures(i);
         } catch (const Error&) {
-            row.state = State::open;
+            row.state = TaskState::open;
             row.fault = "its result is damaged";
         }
     }
@@ -102,7 +102,7 @@ std::string csv_of(const Jobs& jobs, const std::vector<Row>& rows) {
         out += fmt::format("{},{},{},{},{},{},{},{},{},{}", r.index, jobs.hash(r.index), csv_field(t.name),
                            csv_field(t.model.file), csv_field(t.strokes), csv_field(t.ink), csv_field(t.brush),
                            csv_field(t.tolerance.name), t.sample, word_of(r.state));
-        out += r.state == State::done
+        out += r.state == TaskState::done
                    ? fmt::format(",{},{:.6g},{:.6g},{},{},{},{},{:.3f},\n", f.canvas_hash, f.ink_area_mm2, f.ink_mm3,
                                  f.strokes, f.dry, f.mismatches, f.unconverged, f.seconds)
                    : fmt::format(",,,,,,,,,{}\n", csv_field(r.fault));
@@ -124,7 +124,7 @@ std::string json_of(const Jobs& jobs, const std::vector<Row>& rows) {
                            {"sample", r.task.sample},
                            {"state", word_of(r.state)}};
         const Figures& f = r.figures;
-        if (r.state == State::done)
+        if (r.state == TaskState::done)
             row.update({{"canvas_hash", f.canvas_hash},
                         {"ink_area_mm2", f.ink_area_mm2},
                         {"ink_mm3", f.ink_mm3},
@@ -142,7 +142,7 @@ std::string json_of(const Jobs& jobs, const std::vector<Row>& rows) {
 std::vector<fs::path> write_contact_sheets(const Jobs& jobs, const std::vector<Row>& rows, const ProgressFn& progress) {
     std::vector<const Row*> done;
     for (const Row& row : rows)
-        if (row.state == State::done && jobs.has_picture(row.index)) done.push_back(&row);
+        if (row.state == TaskState::done && jobs.has_picture(row.index)) done.push_back(&row);
     const std::size_t n = (done.size() + kMostOnSheet - 1) / kMostOnSheet;
     std::vector<fs::path> files;
     for (std::size_t s = 0; s < n; ++s) {

@@ -13,7 +13,7 @@ namespace tuft::variants {
 struct Row {
     std::size_t index = 0;
     Task task;
-    State state = State::open;
+    TaskState state = TaskState::open;
     Figures figures;    ///< where it is done
     std::string fault;  ///< where it failed, or its result is damaged
 };

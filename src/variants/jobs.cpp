@@ -103,10 +103,10 @@ Task Jobs::task(std::size_t i) const {
     return task;
 }
 
-State Jobs::state(std::size_t i) const {
+TaskState Jobs::state(std::size_t i) const {
     std::error_code ec;
-    if (fs::exists(result_folder(i) / kResult, ec)) return State::done;
-    return fs::exists(failure_file(i), ec) ? State::failed : State::open;
+    if (fs::exists(result_folder(i) / kResult, ec)) return TaskState::done;
+    return fs::exists(failure_file(i), ec) ? TaskState::failed : TaskState::open;
 }
 
 std::optional<TaskLock> Jobs::lock(std::size_t i) const {
@@ -137,7 +137,7 @@ void Jobs::store(std::size_t i, const Outcome& outcome) const {
     if (::rename(beside.c_str(), place.c_str()) != 0) {
         const int fault = errno;
         fs::remove_all(beside, ec);
-        if (state(i) != State::done)
+        if (state(i) != TaskState::done)
             throw Error(place.string(), Message("cannot be written: {}", system_message(fault)));
     }
     fs::remove(failure_file(i), ec);
@@ -183,7 +183,7 @@ bool Jobs::has_picture(std::size_t i) const {
 }
 
 bool Jobs::remove_damaged(std::size_t i) const {
-    if (state(i) != State::done) return false;
+    if (state(i) != TaskState::done) return false;
     try {
         figures(i);
         coverage(i);
@@ -216,10 +216,10 @@ Jobs lay_out(const Plan& plan, const std::vector<Task>& tasks, const fs::path& f
 }
 
 Ran run_task(const Jobs& jobs, std::size_t i, const PaintTask& paint, ContentHashes& known) {
-    if (jobs.state(i) == State::done) return Ran::done_before;
+    if (jobs.state(i) == TaskState::done) return Ran::done_before;
     const auto mine = jobs.lock(i);
     if (!mine) return Ran::taken;
-    if (jobs.state(i) == State::done) return Ran::done_before;
+    if (jobs.state(i) == TaskState::done) return Ran::done_before;
     try {
         const Task task = jobs.task(i);
         if (task.program != program_version())

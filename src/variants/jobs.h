@@ -21,7 +21,8 @@
 /// their results. The folder must lie on a disk with flock, such as local ones and NFSv4.
 namespace tuft::variants {
 
-enum class State { open, done, failed };
+/// How far a task is.
+enum class TaskState { open, done, failed };
 
 /// A task's lock; released when it or its process ends.
 class TaskLock {
@@ -48,7 +49,7 @@ class Jobs {
     const std::string& hash(std::size_t i) const { return hashes_[i]; }
 
     Task task(std::size_t i) const;
-    State state(std::size_t i) const;
+    TaskState state(std::size_t i) const;
     std::filesystem::path result_folder(std::size_t i) const;
     /// Returns nothing when another process has the task.
     std::optional<TaskLock> lock(std::size_t i) const;
@@ -84,6 +85,7 @@ Jobs lay_out(const Plan& plan, const std::vector<Task>& tasks, const std::filesy
 /// Paints a task. Throws `Error` where it cannot be painted.
 using PaintTask = std::function<Outcome(const Task& task)>;
 
+/// What running a task came to.
 enum class Ran {
     painted,
     done_before,

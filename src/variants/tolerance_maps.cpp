@@ -39,10 +39,10 @@ std::vector<Group> groups_of(const std::vector<Row>& rows) {
             tolerance = nullptr;
             continue;
         }
-        if (!planned || planned->state != State::done || !same_decoration(planned->task, row.task)) continue;
+        if (!planned || planned->state != TaskState::done || !same_decoration(planned->task, row.task)) continue;
         if (!tolerance || !(*tolerance == row.task.tolerance)) groups.push_back({planned, {}});
         tolerance = &row.task.tolerance;
-        if (row.state == State::done) groups.back().samples.push_back(&row);
+        if (row.state == TaskState::done) groups.back().samples.push_back(&row);
     }
     std::erase_if(groups, [](const Group& g) { return g.samples.size() < kLeastSamples; });
     return groups;

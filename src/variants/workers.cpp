@@ -113,7 +113,7 @@ class Crew {
   public:
     Crew(const Jobs& jobs, const WorkerOptions& options) : jobs_(jobs), options_(options) {
         for (std::size_t i = 0; i < jobs.size(); ++i)
-            if (jobs.state(i) == State::open) ++open_;
+            if (jobs.state(i) == TaskState::open) ++open_;
     }
 
     WorkersReport run() {
@@ -125,7 +125,7 @@ class Crew {
             wait_for_lines();
         }
         for (std::size_t i = 0; i < jobs_.size(); ++i)
-            if (jobs_.state(i) == State::open) ++report_.open;
+            if (jobs_.state(i) == TaskState::open) ++report_.open;
         return report_;
     }
 
@@ -169,7 +169,7 @@ class Crew {
         if (!task && ++without_task_ > kMostIdleEnds)
             throw Error(fmt::format("workers end at once, with {}; try 'tuft run-task {} 0'", end_of(status),
                                     jobs_.folder().string()));
-        if (task && jobs_.state(*task) == State::open && is_enough(*task, status)) {
+        if (task && jobs_.state(*task) == TaskState::open && is_enough(*task, status)) {
             jobs_.store_failure(*task, fmt::format("its workers end each time, the last with {}", end_of(status)));
             ++report_.failed;
         }
@@ -214,7 +214,7 @@ WorkersReport run_open_tasks(const Jobs& jobs, const PaintTask& paint, bool repo
     ContentHashes known;
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         check_interrupt();
-        if (jobs.state(i) != State::open) continue;
+        if (jobs.state(i) != TaskState::open) continue;
         const PaintTask begun = [&](const Task& task) {
             if (reports && !report_start(i)) throw Cancelled();
             return paint(task);

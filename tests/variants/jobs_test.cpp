@@ -58,11 +58,11 @@ TEST_F(JobsFolder, ATaskRunsOnceAndItsResultComesBack) {
     ContentHashes known;
     int painted = 0;
     const PaintTask paint = [&](const Task& t) { return ++painted, outcome(t); };
-    EXPECT_EQ(j.state(1), State::open);
+    EXPECT_EQ(j.state(1), TaskState::open);
     EXPECT_EQ(run_task(j, 1, paint, known), Ran::painted);
     EXPECT_EQ(run_task(j, 1, paint, known), Ran::done_before);
     EXPECT_EQ(painted, 1);
-    EXPECT_EQ(j.state(1), State::done);
+    EXPECT_EQ(j.state(1), TaskState::done);
     const Outcome out = outcome(j.task(1));
     EXPECT_EQ(j.figures(1), out.figures);
     EXPECT_EQ(j.coverage(1), out.coverage);
@@ -86,14 +86,14 @@ TEST_F(JobsFolder, AFaultIsStoredAndAStopIsNot) {
     EXPECT_EQ(run_task(
                   j, 0, [](const Task&) -> Outcome { throw Error("no such brush"); }, known),
               Ran::failed);
-    EXPECT_EQ(j.state(0), State::failed);
+    EXPECT_EQ(j.state(0), TaskState::failed);
     EXPECT_EQ(j.failure(0), "no such brush");
     EXPECT_THROW(run_task(
                      j, 1, [](const Task&) -> Outcome { throw Cancelled(); }, known),
                  Cancelled);
-    EXPECT_EQ(j.state(1), State::open);
+    EXPECT_EQ(j.state(1), TaskState::open);
     EXPECT_EQ(run_task(j, 0, outcome, known), Ran::painted);  // again, and now it goes
-    EXPECT_EQ(j.state(0), State::done);
+    EXPECT_EQ(j.state(0), TaskState::done);
 }
 
 TEST_F(JobsFolder, AFileThatChangedIsNotPaintedUnderItsOldHash) {
@@ -111,8 +111,8 @@ TEST_F(JobsFolder, AnEnlargedPlanRetainsItsResults) {
     const Jobs more = jobs(5), less = jobs(2);
     EXPECT_EQ(more.size(), 6u);
     EXPECT_EQ(less.size(), 3u);
-    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(more.state(i), State::done);
-    EXPECT_EQ(more.state(5), State::open);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(more.state(i), TaskState::done);
+    EXPECT_EQ(more.state(5), TaskState::open);
     EXPECT_FALSE(fs::exists(folder_ / "jobs/tasks/000003.json"));
 }
 
@@ -131,7 +131,7 @@ TEST_F(JobsFolder, DamagedResultsAreFoundAndOpenAgain) {
                 f.put('#');
             }
             EXPECT_TRUE(j.remove_damaged(0)) << name;
-            EXPECT_EQ(j.state(0), State::open);
+            EXPECT_EQ(j.state(0), TaskState::open);
         }
 }
 

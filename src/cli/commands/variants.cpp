@@ -167,7 +167,7 @@ variants::Jobs open_jobs(const VariantsWork& a) {
 /// Puts the models of open tasks into the cache, so that the workers do not all prepare the same one at once.
 void prepare_models(const variants::Jobs& jobs, TaskPainter& painter) {
     for (std::size_t i = 0; i < jobs.size(); ++i)
-        if (jobs.state(i) == variants::State::open) painter.model_of(jobs.task(i));
+        if (jobs.state(i) == variants::TaskState::open) painter.model_of(jobs.task(i));
 }
 
 void run_jobs(const variants::Jobs& jobs, Console& console) {
@@ -202,7 +202,9 @@ struct Counts {
 Counts count(const std::vector<variants::Row>& rows) {
     Counts n;
     for (const variants::Row& row : rows) {
-        ++(row.state == variants::State::done ? n.done : row.state == variants::State::failed ? n.failed : n.open);
+        ++(row.state == variants::TaskState::done     ? n.done
+           : row.state == variants::TaskState::failed ? n.failed
+                                                      : n.open);
         if (!row.fault.empty() && n.fault.empty())
             n.fault = fmt::format("task {} ({}): {}", row.index, row.task.name, row.fault);
     }

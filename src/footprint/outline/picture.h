@@ -23,6 +23,7 @@ void pack_picture(const Footprint& footprint, std::vector<std::uint16_t>& pairs)
 /// Transposes the picture [width * height] to [height * width]. Cost: 0.1 ns a cell.
 void transpose(std::span<const std::uint8_t> cells, int width, int height, Recycled<std::uint8_t>& turned);
 
+/// What a block of cells holds.
 enum class Cover : std::uint8_t { mixed, empty, full };
 
 /// Discs in a picture, for a batch of coverage queries.

@@ -11,6 +11,7 @@
 /// the first picture and calls it through these function pointers. The functions may run on any thread.
 namespace tuft::io {
 
+/// Format of a picture file.
 enum class ImageFormat { png, exr, jpeg, tiff };
 
 /// Pixels to be encoded.

@@ -25,6 +25,7 @@ struct CadReading {
     bool operator==(const CadReading&) const = default;
 };
 
+/// CAD formats that Open CASCADE reads.
 enum class CadFormat { step, iges };
 
 /// Returns all polygons of all nodes with the nodes' transforms applied. Points are in metres, z up, by the file's unit

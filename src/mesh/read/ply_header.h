@@ -8,8 +8,10 @@
 /// Header of a PLY file [Turk1994]: its elements and the layout of their rows. Used by the PLY reader only.
 namespace tuft::mesh {
 
+/// Encoding of the rows.
 enum class PlyFormat { kAscii, kLittleEndian, kBigEndian };
 
+/// Type of a value.
 enum class PlyType : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
 
 /// Bytes of one value in a binary file.

@@ -19,6 +19,7 @@ struct GlLight {
     bool operator==(const GlLight&) const = default;
 };
 
+/// Lamps of the window.
 enum class LightRig { studio, window, raking };
 
 /// Returns the light of a rig; the lamps are fixed relative to the camera.

@@ -18,6 +18,7 @@
 /// the object was made.
 namespace tuft::render {
 
+/// How the window shows the model; the numbers are those of the shader.
 enum class Shading { glaze = 0, clay = 1, flat = 2, height = 3, texels = 4, triangles = 5 };
 
 /// Colour mesh for things that change every frame, such as the tuft.

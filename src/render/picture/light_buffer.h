@@ -12,6 +12,7 @@
 /// shadows preserved. Called by picture.h.
 namespace tuft::render {
 
+/// What a ray meets.
 enum class HitKind : std::uint8_t { backdrop, floor, object };
 
 /// A surface seen through a picture position.

@@ -19,6 +19,7 @@ struct Image {
     std::vector<std::uint8_t> rgb;  ///< [3 width height]
 };
 
+/// Surface of the model without ink.
 enum class Finish {
     porcelain,  ///< white body under a clear smooth coat (refractive index 1.5)
     clay,       ///< matt warm grey-brown
@@ -44,6 +45,7 @@ struct Appearance {
     TextureMaps maps;
 };
 
+/// Lamps of a picture.
 enum class Lights {
     studio,  ///< three soft boxes
     raking,  ///< one small lamp from the side, which shows the relief of the ink with its shadows

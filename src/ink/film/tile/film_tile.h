@@ -23,6 +23,7 @@ inline constexpr int kSquares = 20 * kSide;                 ///< 17 rows of them
 inline constexpr int kField = 22 * kSide;                   ///< and the ends of those squares' diagonals
 static_assert(kSquares > (kSide + 1) * kRow - 2 && kField >= kSquares + kRow + 1);
 
+/// A number for each texel of a tile and of its border.
 struct alignas(64) Field : std::array<float, kField> {};
 
 /// Unit of 16-bit conductances: half the memory, and memory bounds the speed of a step. 1 is exact.

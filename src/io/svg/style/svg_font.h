@@ -10,7 +10,9 @@
 /// Font properties of SVG text (SVG 1.1, 10; CSS Fonts). Called by svg_scene.cpp and svg_text.cpp. Any thread.
 namespace tuft::io {
 
+/// Part of a line of text that lies at its position (`text-anchor`).
 enum class SvgAnchor { start, middle, end };
+/// Line of the font that lies at the position (`dominant-baseline`).
 enum class SvgBaseline { alphabetic, middle, central, hanging, text_top, text_bottom, mathematical };
 
 /// Properties of text that elements inherit from their parents. Lengths in user units.

@@ -32,6 +32,7 @@ struct SvgPaint {
     bool paints_colours() const { return paints() || kind == Kind::white; }
 };
 
+/// Ends and corners of lines (SVG 1.1, 11.4).
 enum class SvgCap { butt, round, square };
 enum class SvgJoin { miter, round, bevel };
 

@@ -22,6 +22,7 @@
 /// forgotten.
 namespace tuft::stroke {
 
+/// What a stroke does to the ink.
 enum class Tool {
     brush,
     eraser,  ///< removes ink, wet and dry, where a brush would leave some
@@ -41,6 +42,7 @@ struct PaintStroke {
     bool erases() const { return tool == Tool::eraser; }
 };
 
+/// What is done to a brush between strokes.
 enum class BrushActionKind {
     dip,      ///< fills the tuft with ink; what it holds stays and mixes
     wipe,     ///< removes part of its ink, as a rag does

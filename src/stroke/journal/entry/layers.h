@@ -44,6 +44,7 @@ struct LayerTable {
     bool operator==(const LayerTable&) const = default;
 };
 
+/// What an edit does to the table of layers.
 enum class LayerChange {
     add,        ///< a new empty layer
     change,     ///< another name, state or place of a layer

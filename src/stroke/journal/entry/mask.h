@@ -12,6 +12,7 @@
 /// mesh; surface/mask_texels.h evaluates them on a model.
 namespace tuft::stroke {
 
+/// What a mask consists of.
 enum class MaskKind {
     group,      ///< triangles of the mesh's groups (materials or objects of its file) of these names
     angle,      ///< where the surface normal is within an angle of a direction
