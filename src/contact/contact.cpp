@@ -58,16 +58,18 @@ Recycled<Vec3> section_centres(const brush::Branch& branch) {
 }
 
 /// Contacts of the tuft's nodes, tip first, spine after spine, each from the ferrule; sub-spines, which follow in the
-/// list, start from the trunk.
+/// list, start from the trunk. `known`: of all spines.
 Recycled<NodeContact> find_tuft_contacts(const Step& w, const brush::TuftBend& tuft, std::span<const Vec3> nodes,
-                                         std::span<const NodeContact> before = {}) {
+                                         const KnownContacts& known = {}) {
     Recycled<NodeContact> out;
     for (const brush::Spine& spine : tuft.spines) {
         const std::size_t first = out.size(), count = spine.rest_radius.size();
-        const auto known =
-            before.size() >= first + count ? before.subspan(first, count) : std::span<const NodeContact>{};
+        const auto part = [&](auto all) {
+            return all.size() >= first + count ? all.subspan(first, count) : decltype(all){};
+        };
         const Recycled<NodeContact> own =
-            find_chain_contacts(w.surface, w.root, nodes.subspan(first, count), w.near, w.search, known);
+            find_chain_contacts(w.surface, w.root, nodes.subspan(first, count), w.near, w.search,
+                                {part(known.contacts), part(known.nodes), known.still, part(known.feet)});
         out.insert(out.end(), own.begin(), own.end());
     }
     if (nodes.size() == out.size()) return out;
@@ -133,17 +135,36 @@ Recycled<ContactPlane> find_side_walls(const Step& w, const brush::Tuft& tuft, s
     return walls;
 }
 
+/// Whether the nodes are where they came to rest with the planes that were last found. Hair at rest keeps its planes:
+/// between two faces those of one rest may lead to the other, from sample to sample.
+bool rests(const Memory& memory, std::span<const Vec3> nodes, const Options& options) {
+    constexpr double kStill = 0.1;  // of the error that planes may have
+    if (memory.nodes.size() != nodes.size() || memory.planes.size() != nodes.size()) return false;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        if (glm::distance(memory.nodes[i], nodes[i]) > kStill * options.refresh_error) return false;
+    return true;
+}
+
 /// Solves, looks where the nodes came to rest, and solves again where their planes were off.
 /// `planes`: those of the last solve. `rest`: contacts of the spines where they lie now, or empty.
-brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, Recycled<ContactPlane>& planes,
+brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memory, Recycled<ContactPlane>& planes,
                        Recycled<NodeContact>& rest) {
     const Recycled<double> radii = node_radii(tuft);
     const double root_radius = radii[tuft.trunk().rest_radius.size() - 1];
     const bool was_split = tuft.split;
     const Recycled<Vec3> nodes = brush::predicted_nodes(tuft, w.pose);
-    const Recycled<NodeContact> predicted = find_tuft_contacts(w, tuft, nodes);
-    for (const NodeContact& c : predicted) planes.push_back(c.wedge);
+    if (rests(memory, nodes, w.options)) {
+        planes = memory.planes;
+        return brush::step(tuft, w.pose, planes, dt, memory.walls);
+    }
+    const Recycled<NodeContact> predicted = find_tuft_contacts(w, tuft, nodes, {.feet = memory.feet});
+    memory.feet.clear();
+    for (const NodeContact& c : predicted) {
+        planes.push_back(c.wedge);
+        if (memory.feet.size() < radii.size() && c.triangle != kNone) memory.feet.push_back(c.plane.origin);
+    }
     const Recycled<ContactPlane> walls = find_side_walls(w, tuft, predicted);
+    memory.nodes.clear();
     if (w.options.max_refreshes <= 0) return brush::step(tuft, w.pose, planes, dt, walls);
 
     thread_local brush::TuftBend before, solved;  // keep their memory
@@ -155,7 +176,8 @@ brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, Recycled<Con
         const Recycled<Vec3> now = brush::predicted_nodes(tuft, w.pose);
         if (tuft.split != was_split && now.size() < nodes.size()) break;
         const auto compared = std::span(now).first(nodes.size());
-        const Recycled<NodeContact> contacts = find_tuft_contacts(w, before, compared, predicted);
+        const Recycled<NodeContact> contacts =
+            find_tuft_contacts(w, before, compared, {predicted, nodes, 0.5 * w.options.refresh_error});
         double worst = 0;
         Recycled<ContactPlane> fresh = planes;
         for (std::size_t i = 0; i < planes.size(); ++i) {
@@ -189,6 +211,9 @@ brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, Recycled<Con
             break;
         }
     }
+    memory.planes = planes;
+    memory.walls = walls;
+    memory.nodes = brush::predicted_nodes(tuft, w.pose);
     return state;
 }
 
@@ -415,7 +440,7 @@ void step_in_air(brush::Tuft& tuft, const Step& w, const StepInput& input, Resul
 void step_on_surface(brush::Tuft& tuft, Step& w, double dt, Memory& memory, Result& result) {
     const brush::Preset& preset = tuft.preset;
     Recycled<NodeContact> rest;
-    result.tuft = w.options.method == Method::exact ? solve(w, tuft, dt, result.planes, rest)
+    result.tuft = w.options.method == Method::exact ? solve(w, tuft, dt, memory, result.planes, rest)
                                                     : solve_by_vertices(w, tuft, dt, result);
     const Recycled<Recycled<NodeContact>> contacts = find_section_contacts(w, tuft, result.tuft, std::move(rest));
     for (const Recycled<NodeContact>& branch : contacts) {
@@ -444,6 +469,7 @@ Result take_step(brush::Tuft& tuft, const mesh::SurfaceQuery& surface, Memory& m
     const bool near = overlap(obb_of(nodes, thick + options.tolerance), obb_of(surface.mesh().bounds));
 
     Step w{surface, input.pose, options, {}, preset.radius, ferrule_pad(preset), 0, {}};
+    w.search.smooth = &memory.smooth;
     w.search.reach = 2 * preset.length + thick + preset.width;
     w.near = 1.2 * preset.radius + options.tolerance + 1e-3;
     if (near) {
@@ -458,6 +484,7 @@ Result take_step(brush::Tuft& tuft, const mesh::SurfaceQuery& surface, Memory& m
     if (!reachable) {
         step_in_air(tuft, w, input, result);
         memory.touching = false;
+        memory.nodes.clear();
     } else {
         step_on_surface(tuft, w, input.dt, memory, result);
         memory.touching = result.tuft.touching;

@@ -2,6 +2,7 @@
 
 #include "brush/tuft/tuft.h"
 #include "contact/near_vertices.h"
+#include "contact/node_contact.h"
 #include "core/system/recycled.h"
 #include "mesh/query/surface_query.h"
 
@@ -38,6 +39,12 @@ struct Memory {
     Vec3 origin{0};          ///< of the last contact frame
     Vec3 centre{0};          ///< of the touching hair, followed like `origin` but not moved onto the surface
     Recycled<Vec3> centres;  ///< of all sections at the last sample, metres
+    Recycled<Vec3> feet;     ///< points of the surface near the spines' nodes at the last sample, metres; or none
+    /// Planes of the nodes and walls beside them as they were last found, and where the nodes came to rest with them,
+    /// metres; or none.
+    Recycled<brush::ContactPlane> planes, walls;
+    Recycled<Vec3> nodes;
+    SmoothTriangles smooth;  ///< of the surface
 };
 
 /// Contact at one pose.

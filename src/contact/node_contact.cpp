@@ -31,6 +31,28 @@ Vec3 corner_normal(const mesh::TriangleMesh& mesh, std::uint32_t t, int k, int l
     return size > 1e-9 ? n / size : n;
 }
 
+/// Corners of the triangle beyond the edge of triangle t from its corner k on: those that are its corners k and k + 1,
+/// and the third; −1: none.
+struct CornersBeyond {
+    int a = -1, b = -1, far = -1;
+};
+
+CornersBeyond corners_beyond(const mesh::TriangleMesh& mesh, std::uint32_t t, int k) {
+    const auto &own = mesh.triangles[t], &of = mesh.triangles[mesh.neighbours[3 * t + k]];
+    CornersBeyond out;
+    for (int i = 0; i < 3; ++i) (of[i] == own[k] ? out.a : of[i] == own[(k + 1) % 3] ? out.b : out.far) = i;
+    return out;
+}
+
+/// Whether both faces beside the edge of triangle t from its corner k on have the same normals along it.
+bool shares_normals(const mesh::TriangleMesh& mesh, std::uint32_t t, int k) {
+    const std::uint32_t other = mesh.neighbours[3 * t + k];
+    const auto [a, b, far] = corners_beyond(mesh, t, k);
+    const auto& normal = mesh.corner_normals;
+    return a >= 0 && b >= 0 && normal[3 * t + k] == normal[3 * other + a] &&
+           normal[3 * t + (k + 1) % 3] == normal[3 * other + b];
+}
+
 /// A point of a sharp convex edge and the normal of the face beyond it.
 struct SharpEdge {
     Vec3 origin{0}, beyond{0};
@@ -42,21 +64,11 @@ struct SharpEdge {
 std::optional<SharpEdge> sharp_edge(const mesh::TriangleMesh& mesh, std::uint32_t t, int k, const Vec3& q) {
     const std::uint32_t other = mesh.neighbours[3 * t + k];
     if (other == kNone) return {};
-    const int l = (k + 1) % 3;
-    const auto& of = mesh.triangles[other];
-    int a = -1, b = -1, far = -1;
-    for (int i = 0; i < 3; ++i) {
-        if (of[i] == mesh.triangles[t][k])
-            a = i;
-        else if (of[i] == mesh.triangles[t][l])
-            b = i;
-        else
-            far = i;
-    }
+    const auto [a, b, far] = corners_beyond(mesh, t, k);
     if (a < 0 || b < 0 || far < 0) return {};
     // Both faces share their normals on a smooth surface: nothing to compute.
-    const auto& normal = mesh.corner_normals;
-    if (normal[3 * t + k] == normal[3 * other + a] && normal[3 * t + l] == normal[3 * other + b]) return {};
+    if (shares_normals(mesh, t, k)) return {};
+    const int l = (k + 1) % 3;
     const Vec3 from = mesh.position(t, k), edge = mesh.position(t, l) - from;
     const double w = std::clamp(glm::dot(q - from, edge) / glm::dot(edge, edge), 0.0, 1.0);
     const Vec3 own = corner_normal(mesh, t, k, l, w);
@@ -67,11 +79,12 @@ std::optional<SharpEdge> sharp_edge(const mesh::TriangleMesh& mesh, std::uint32_
     return SharpEdge{nearest, face_normal(mesh, other), glm::length(nearest - q)};
 }
 
+constexpr double kEdgeReach = 1e-3;  // metres; more than a node goes from step to step
+
 /// The sharp convex edge nearest to the surface point q within reach, over triangles that
 /// hang together with q's without such an edge between them.
 std::optional<SharpEdge> find_edge(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint& q) {
-    constexpr double kReach = 1e-3;  // metres; more than a node goes from step to step
-    constexpr int kMost = 24;        // triangles
+    constexpr int kMost = 24;  // triangles
     std::array<std::uint32_t, kMost> seen{q.triangle};
     int count = 1;
     std::optional<SharpEdge> best;
@@ -83,7 +96,8 @@ std::optional<SharpEdge> find_edge(const mesh::TriangleMesh& mesh, const mesh::S
             const Vec3 to_q = q.position - from;
             const double length2 = glm::dot(edge, edge), along = std::clamp(glm::dot(to_q, edge), 0.0, length2);
             // Squared distance from the edge, times its squared length.
-            if (length2 * glm::dot(to_q, to_q) + along * (along - 2 * glm::dot(to_q, edge)) > kReach * kReach * length2)
+            if (length2 * glm::dot(to_q, to_q) + along * (along - 2 * glm::dot(to_q, edge)) >
+                kEdgeReach * kEdgeReach * length2)
                 continue;
             if (const auto sharp = sharp_edge(mesh, seen[i], k, q.position)) {
                 if (!best || sharp->distance < best->distance) best = sharp;
@@ -106,7 +120,40 @@ bool before_other_face(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint&
     return false;
 }
 
+/// Whether the search of `find_edge` finds nothing from any point of triangle t. It may say no where that is so.
+bool is_smooth_round(const mesh::TriangleMesh& mesh, std::uint32_t t) {
+    constexpr int kMost = 128;  // triangles; on finer meshes their number takes longer than `find_edge`
+    const Vec3 middle = (mesh.position(t, 0) + mesh.position(t, 1) + mesh.position(t, 2)) / 3.0;
+    double reach = 0;
+    for (int k = 0; k < 3; ++k) reach = std::max(reach, glm::length(mesh.position(t, k) - middle));
+    reach += 1.001 * kEdgeReach;
+    std::array<std::uint32_t, kMost> seen{t};
+    int count = 1;
+    for (int i = 0; i < count; ++i) {
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t next = mesh.neighbours[3 * seen[i] + k];
+            if (next == kNone) continue;
+            const Vec3 from = mesh.position(seen[i], k), edge = mesh.position(seen[i], (k + 1) % 3) - from;
+            const double along = std::clamp(glm::dot(middle - from, edge) / glm::dot(edge, edge), 0.0, 1.0);
+            if (glm::length(from + along * edge - middle) > reach) continue;
+            // Whether an edge is sharp depends on the place along it, but where both faces have the same normals.
+            if (!shares_normals(mesh, seen[i], k)) return false;
+            if (std::find(seen.begin(), seen.begin() + count, next) != seen.begin() + count) continue;
+            if (count == kMost) return false;
+            seen[count++] = next;
+        }
+    }
+    return true;
+}
+
 }  // namespace
+
+bool SmoothTriangles::has_no_edge(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
+    if (slot_.empty()) slot_.assign(kSlots, kNone);
+    std::uint32_t& slot = slot_[triangle % kSlots];
+    if (slot == kNone || slot / 2 != triangle) slot = 2 * triangle + (is_smooth_round(mesh, triangle) ? 0 : 1);
+    return slot % 2 == 0;
+}
 
 NodeContact find_node_contact(const mesh::SurfaceQuery& surface, const NodeQuery& query,
                               const NodeContactOptions& options) {
@@ -145,7 +192,8 @@ NodeContact find_node_contact(const mesh::SurfaceQuery& surface, const NodeQuery
                                    : plane_normal(*q, out.side, off, options.lift);
     out.height = glm::dot(off, out.plane.normal);
     out.wedge = out.plane;
-    if (const auto edge = find_edge(surface.mesh(), *q)) {
+    const bool smooth = options.smooth && options.smooth->has_no_edge(surface.mesh(), q->triangle);
+    if (const auto edge = smooth ? std::nullopt : find_edge(surface.mesh(), *q)) {
         // On the edge itself both faces are taken flat, so that it is the same from either.
         const Vec3& own = edge->distance < 1e-7 ? q->face_normal : q->normal;
         out.wedge = {q->position, out.side * own, edge->origin, out.side * edge->beyond};
@@ -154,9 +202,26 @@ NodeContact find_node_contact(const mesh::SurfaceQuery& surface, const NodeQuery
     return out;
 }
 
+namespace {
+
+/// Whether a node that was at `was` keeps its plane. Distances from the surface change no faster than the node.
+bool keeps_plane(const NodeContact& before, const Vec3& was, const Vec3& node, double still) {
+    return before.triangle != kNone && before.wedge.beyond_normal == Vec3{0} && glm::length(node - was) <= still;
+}
+
+/// The contact of a node that moved to `node` and keeps its plane.
+NodeContact moved_on(NodeContact contact, const Vec3& node, double lift) {
+    const Vec3& n = contact.plane.normal;
+    contact.height = glm::dot(node - contact.plane.origin, n);
+    contact.outside = contact.height < lift ? node + (lift - contact.height) * n : node;
+    return contact;
+}
+
+}  // namespace
+
 Recycled<NodeContact> find_chain_contacts(const mesh::SurfaceQuery& surface, const NodeContact& root,
                                           std::span<const Vec3> nodes, double near, const NodeContactOptions& options,
-                                          std::span<const NodeContact> before) {
+                                          const KnownContacts& known) {
     Recycled<NodeContact> out(nodes.size());
     NodeContact last = root;
     Vec3 searched_at = root.outside;
@@ -170,10 +235,19 @@ Recycled<NodeContact> find_chain_contacts(const mesh::SurfaceQuery& surface, con
             out[i].height = free;
             continue;
         }
-        const NodeContact& hint = i < before.size() ? before[i] : last;
-        const Vec3& from = i + 1 < nodes.size() ? out[i + 1].outside : root.outside;
-        const Vec3* known = hint.triangle != kNone ? &hint.plane.origin : nullptr;
-        last = find_node_contact(surface, {node, from, last.side, known}, options);
+        const NodeContact* before = i < known.contacts.size() ? &known.contacts[i] : nullptr;
+        if (before && i < known.nodes.size() && keeps_plane(*before, known.nodes[i], node, known.still)) {
+            last = moved_on(*before, node, options.lift);
+        } else {
+            const Vec3* foot = nullptr;
+            const auto consider = [&](const Vec3& point) {
+                if (!foot || glm::length(point - node) < glm::length(*foot - node)) foot = &point;
+            };
+            if (const NodeContact& hint = before ? *before : last; hint.triangle != kNone) consider(hint.plane.origin);
+            if (!before && i < known.feet.size()) consider(known.feet[i]);
+            const Vec3& from = i + 1 < nodes.size() ? out[i + 1].outside : root.outside;
+            last = find_node_contact(surface, {node, from, last.side, foot}, options);
+        }
         out[i] = last;
         searched_at = last.outside;
         clearance = last.triangle == kNone ? options.reach : last.height;

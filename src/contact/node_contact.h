@@ -30,10 +30,23 @@ struct NodeQuery {
     const Vec3* known = nullptr;  ///< any point of the surface: bounds the search and makes it faster; null: none
 };
 
+/// Triangles of one mesh from whose points no sharp convex edge is in reach, as far as they were looked at: nodes come
+/// to the same ones again and again. It makes the search faster and changes no result.
+class SmoothTriangles {
+  public:
+    bool has_no_edge(const mesh::TriangleMesh& mesh, std::uint32_t triangle);
+
+  private:
+    static constexpr std::size_t kSlots = 1024;
+    /// Twice the triangle, and one where an edge may be in reach; kNone: nothing.
+    Recycled<std::uint32_t> slot_;
+};
+
 /// Distances of the search.
 struct NodeContactOptions {
-    double reach = 0.05;  ///< metres within which surfaces are looked for, > 0
-    double lift = 2e-5;   ///< metres, distance of `outside` from the surface, > 0
+    double reach = 0.05;                ///< metres within which surfaces are looked for, > 0
+    double lift = 2e-5;                 ///< metres, distance of `outside` from the surface, > 0
+    SmoothTriangles* smooth = nullptr;  ///< of the mesh, or null
 };
 
 /// Returns the surface that a node meets when it comes from `from`. If a wall of any thickness lies between them,
@@ -42,13 +55,21 @@ struct NodeContactOptions {
 NodeContact find_node_contact(const mesh::SurfaceQuery& surface, const NodeQuery& query,
                               const NodeContactOptions& options);
 
+/// What is known of the contacts of a chain before they are looked for. Each may be empty.
+struct KnownContacts {
+    std::span<const NodeContact> contacts;  ///< of the same nodes a little before
+    std::span<const Vec3> nodes;            ///< metres, where the nodes of `contacts` were
+    double still = 0;                       ///< metres: a node that moved no more keeps its plane, but beside an edge
+    std::span<const Vec3> feet;             ///< metres, points of the surface, near the nodes at best
+};
+
 /// Returns the contacts of a chain of nodes (tip first, root last, like the tuft's). Each is found from the previous
 /// one, from the root outwards. Nodes farther than `near` metres from any surface share the last plane found; their
-/// height over it is at most their distance from the surface. `before`, if not empty, holds the previous contacts of
-/// the same nodes and only makes the search faster.
+/// height over it is at most their distance from the surface. `known` makes the search faster. A node that keeps its
+/// plane is off it by up to twice `known.still`.
 Recycled<NodeContact> find_chain_contacts(const mesh::SurfaceQuery& surface, const NodeContact& root,
                                           std::span<const Vec3> nodes, double near, const NodeContactOptions& options,
-                                          std::span<const NodeContact> before = {});
+                                          const KnownContacts& known = {});
 
 /// Returns a point outside the object for a tuft at `root` whose handle points along `up`. It is the root, or,
 /// inside a closed object, the exit point of the handle.

@@ -66,6 +66,7 @@ TrialReport run_trial(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface
             report.unconverged += !answer.converged;
             const brush::SolverWork& work = solver.state().work;
             report.most_evaluations = std::max(report.most_evaluations, work.evaluations + work.values);
+            report.evaluations += static_cast<std::uint64_t>(work.evaluations + work.values);
             report.seconds.push_back(static_cast<float>(answer.seconds));
             if (options.record) report.roots.push_back({pose, answer.touching});
         }
@@ -131,6 +132,7 @@ void merge(TrialReport& into, const TrialReport& from) {
     into.solves += from.solves;
     into.unconverged += from.unconverged;
     into.most_evaluations = std::max(into.most_evaluations, from.most_evaluations);
+    into.evaluations += from.evaluations;
     into.limited += from.limited;
     into.contacts += from.contacts;
     into.seconds.insert(into.seconds.end(), from.seconds.begin(), from.seconds.end());

@@ -63,9 +63,10 @@ struct TrialReport {
     std::size_t periods = 0, solves = 0, unconverged = 0, limited = 0, contacts = 0;
     /// Evaluations of the potential in one solve, of its values and with derivatives, at most.
     int most_evaluations = 0;
-    std::vector<float> seconds;  ///< of each solve
-    std::uint64_t hash = 0;      ///< of all forces
-    std::vector<Vec3> forces;    ///< N, on the hand, one per period
+    std::uint64_t evaluations = 0;  ///< of all solves together
+    std::vector<float> seconds;     ///< of each solve
+    std::uint64_t hash = 0;         ///< of all forces
+    std::vector<Vec3> forces;       ///< N, on the hand, one per period
     std::vector<SolvedPose> roots;
     Vec3 last_hair{0};  ///< N, of the hair at the end
 };

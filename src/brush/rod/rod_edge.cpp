@@ -12,9 +12,11 @@ namespace {
 /// A piece shortened along itself by `s`.
 struct Shortened {
     double s = 0, depth = 0;
-    double miss = 0;   // s / compliance less the force along the hair
-    double slope = 0;  // ∂miss/∂s
-    double push = 0;   // of the contact
+    double miss = 0;         // s / compliance less the force along the hair
+    double slope = 0;        // ∂miss/∂s
+    NormalForce push, pull;  // of the contact, and of the wet film
+
+    double force() const { return push.force - pull.force; }
 };
 
 /// A piece of hair over a crease.
@@ -62,13 +64,12 @@ LineDistance PieceOverEdge::line_at(double s) const {
 Shortened PieceOverEdge::at(double s) const {
     const LineDistance d = line_at(s);
     Shortened out{.s = s, .depth = piece_.radius - d.z};
-    const NormalForce push = normal_force(law_, piece_.weight, piece_.radius, out.depth, 0),
-                      pull = adhesion(law_, piece_.weight, -out.depth);
-    out.push = push.force;
+    out.push = normal_force(law_, piece_.weight, piece_.radius, out.depth, 0);
+    out.pull = adhesion(law_, piece_.weight, -out.depth);
     if (piece_.compliance > 0) {
-        const double force = push.force - pull.force;
-        out.miss = s / piece_.compliance - force * d.slope;
-        out.slope = 1 / piece_.compliance + (push.stiffness + pull.stiffness) * d.slope * d.slope - force * d.bend;
+        out.miss = s / piece_.compliance - out.force() * d.slope;
+        out.slope = 1 / piece_.compliance + (out.push.stiffness + out.pull.stiffness) * d.slope * d.slope -
+                    out.force() * d.bend;
     }
     return out;
 }
@@ -76,7 +77,7 @@ Shortened PieceOverEdge::at(double s) const {
 // Bracketed from outside, where hair that comes from its root meets the surface.
 Shortened PieceOverEdge::stand() const {
     Shortened low = at(0);
-    if (piece_.compliance <= 0 || low.push <= 0) return low;
+    if (piece_.compliance <= 0 || low.push.force <= 0) return low;
     constexpr int kSteps = 12;
     const double step = 3 * law_.end_compliance / kSteps;
     Shortened high = at(kSteps * step);
@@ -100,7 +101,7 @@ Shortened PieceOverEdge::between(Shortened low, Shortened high) const {
     double s = (low.s * high.miss - high.s * low.miss) / (high.miss - low.miss);
     for (int i = 0; i < 60 && high.s - low.s > 1e-15; ++i) {
         mid = at(s);
-        if (std::abs(mid.miss) < 1e-12 * (1 + mid.push)) break;
+        if (std::abs(mid.miss) < 1e-12 * (1 + mid.push.force)) break;
         (mid.miss > 0 ? high : low) = mid;
         s = mid.s - mid.miss / mid.slope;
         if (!(s > low.s && s < high.s)) s = 0.5 * (low.s + high.s);
@@ -108,25 +109,15 @@ Shortened PieceOverEdge::between(Shortened low, Shortened high) const {
     return mid;
 }
 
-/// Forces of a piece where it stands.
-struct PieceForces {
-    NormalForce push, pull;
-};
-
-PieceForces forces_of(const Law& law, const HairPiece& piece, double depth) {
-    return {normal_force(law, piece.weight, piece.radius, depth, 0), adhesion(law, piece.weight, -depth)};
-}
-
 /// Adds the derivatives of a piece that stands at `st`. With y = x + s i and ψ(y) the contact's potential:
 /// E = s²/(2 compliance) + ψ, E_x = ψ', E_i = s ψ'.
-void add_piece(const HairPiece& piece, const PieceOverEdge& hair, const Shortened& st, const PieceForces& f,
-               Evaluation& out) {
+void add_piece(const HairPiece& piece, const PieceOverEdge& hair, const Shortened& st, Evaluation& out) {
     const Stencil& at = piece.at;
-    const double force = f.push.force - f.pull.force;
+    const double force = st.force();
     const Distance at_surface = hair.distance_at(st.s);
     const Vec3& n = at_surface.slope;
     const Vec3 slope = -force * n;
-    Sym3 xx = (f.push.stiffness + f.pull.stiffness) * outer(n);
+    Sym3 xx = (st.push.stiffness + st.pull.stiffness) * outer(n);
     xx += -force * at_surface.bend * outer(at_surface.across);
     if (st.s > 0) {
         const Vec3 ci = xx * hair.inwards, b = slope + st.s * ci;
@@ -155,13 +146,12 @@ double add_hair_at_edge(const Frozen& frozen, int p, bool derivatives, Evaluatio
         if (piece.weight <= 0) continue;
         const PieceOverEdge hair(frozen, p, piece, out.node);
         const Shortened st = hair.stand();
-        const PieceForces f = forces_of(*frozen.law, piece, st.depth);
-        if (f.push.force == f.pull.force) continue;
-        energy += f.push.energy + f.pull.energy;
+        if (st.push.force == st.pull.force) continue;
+        energy += st.push.energy + st.pull.energy;
         if (st.s > 0) energy += st.s * st.s / (2 * piece.compliance);
         if (!derivatives) continue;
-        out.normal[p] += f.push.force;
-        add_piece(piece, hair, st, f, out);
+        out.normal[p] += st.push.force;
+        add_piece(piece, hair, st, out);
     }
     return energy;
 }
@@ -173,11 +163,11 @@ Obstacle mean_plane_at_edge(const Frozen& frozen, int p, const Recycled<Vec3>& n
         if (piece.weight <= 0) continue;
         const PieceOverEdge hair(frozen, p, piece, node);
         const Shortened st = hair.stand();
-        if (st.push <= 0) continue;
+        if (st.push.force <= 0) continue;
         const Distance d = hair.distance_at(st.s);
-        total += st.push;
-        normal += st.push * d.slope;
-        origin += st.push * (hair.x + st.s * hair.inwards - d.z * d.slope);
+        total += st.push.force;
+        normal += st.push.force * d.slope;
+        origin += st.push.force * (hair.x + st.s * hair.inwards - d.z * d.slope);
     }
     const double mean = glm::length(normal);
     return mean > 1e-6 * total && total > 0 ? Obstacle{origin / total, normal / mean, here.radius} : here;

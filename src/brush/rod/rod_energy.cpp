@@ -259,12 +259,6 @@ double add_contacts(const Frozen& frozen, bool derivatives, Evaluation& out) {
 }  // namespace
 
 double value_of(const Frozen& frozen, const Shape& shape, Evaluation& out) {
-    const int n = frozen.rod->segments();
-    out.slope.resize(n + 1);
-    out.curvature.resize(n + 1);
-    out.coupling.resize(n);
-    out.across.resize(n);
-    out.normal.resize(frozen.obstacles.size());
     const double joints = add_joints(frozen, shape, out);
     return joints + add_contacts(frozen, false, out);
 }

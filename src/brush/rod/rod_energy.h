@@ -174,6 +174,24 @@ struct Evaluation {
     Recycled<JointForce> joint;  ///< [n]
 };
 
+/// Adds curvature · f(k, l) to the second derivatives over nodes k and l of a stencil.
+template <class F>
+void add_curvature(const Stencil& at, const Sym3& curvature, Evaluation& out, const F& f) {
+    for (int k = 0; k < at.count; ++k) out.curvature[at.first + k] += f(k, k) * curvature;
+    for (int k = 0; k + 1 < at.count; ++k) out.coupling[at.first + k] += f(k, k + 1) * curvature;
+    if (at.count > 2) out.across[at.first] += f(0, 2) * curvature;
+}
+
+inline void add_slope(const Stencil& at, const double* w, const Vec3& slope, Evaluation& out) {
+    for (int k = 0; k < at.count; ++k) out.slope[at.first + k] += w[k] * slope;
+}
+
+/// Adds the derivatives of a potential of the place `at` over that place.
+inline void add_potential(const Stencil& at, const Vec3& slope, const Sym3& curvature, Evaluation& out) {
+    add_slope(at, at.w, slope, out);
+    add_curvature(at, curvature, out, [&](int k, int l) { return at.w[k] * at.w[l]; });
+}
+
 /// Computes the sides by parallel transport from the clamp along the rod.
 void transport_sides(const Clamp& clamp, const Recycled<Vec3>& tangents, Recycled<Vec3>& sides);
 

@@ -153,17 +153,25 @@ void Solver::freeze_friction(const Recycled<Vec3>& x, const Recycled<Vec3>& tang
     turn_patches(frozen);
 }
 
-bool Solver::extrapolate_shape() {
+bool Solver::propose_shape(const Guess* guess) {
+    const bool guessed = guess && guess->tangent.size() == shape.tangent.size();
     const double part = step_ratio();
-    if (memory.turn.empty() || part <= 0) return false;
-    const Mat3 frame = clamp_frame(memory.clamp);
-    ws.next.tangent.resize(shape.tangent.size());
+    if (!guessed && (memory.turn.empty() || part <= 0)) return false;
+    Recycled<Vec3>& tangent = ws.next.tangent;
+    tangent.resize(shape.tangent.size());
     ws.ahead = memory.node;
+    const Mat3 frame = clamp_frame(memory.clamp);
     for (int j = 0; j < n(); ++j) {
-        ws.next.tangent[j] = glm::normalize(shape.tangent[j] + part * (frame * memory.turn[j]));
-        ws.ahead[j + 1] = ws.ahead[j] + rod.length[j] * ws.next.tangent[j];
+        tangent[j] = guessed ? guess->tangent[j] : glm::normalize(shape.tangent[j] + part * (frame * memory.turn[j]));
+        ws.ahead[j + 1] = ws.ahead[j] + rod.length[j] * tangent[j];
     }
-    transport_sides(memory.clamp, ws.next.tangent, ws.next.side);
+    transport_sides(memory.clamp, tangent, ws.next.side);
+    for (std::size_t p = 1; guessed && p < std::min(normal.size(), guess->force.size()); ++p)
+        normal[p] = guess->force[p];
+    if (!guessed && stands())
+        freeze_friction(memory.node, shape.tangent);
+    else
+        freeze_friction(ws.ahead, tangent);
     return true;
 }
 
@@ -171,29 +179,8 @@ bool Solver::stands() const {
     return glm::dot(memory.tangent.back(), memory.clamp.tangent) > kStands;
 }
 
-void Solver::freeze_extrapolated() {
-    if (stands())
-        freeze_friction(memory.node, shape.tangent);
-    else
-        freeze_friction(ws.ahead, ws.next.tangent);
-}
-
-void Solver::take_guess(const Guess& guess) {
-    ws.next.tangent = guess.tangent;
-    ws.ahead = memory.node;
-    for (int j = 0; j < n(); ++j) ws.ahead[j + 1] = ws.ahead[j] + rod.length[j] * guess.tangent[j];
-    transport_sides(memory.clamp, ws.next.tangent, ws.next.side);
-    for (std::size_t p = 1; p < std::min(normal.size(), guess.force.size()); ++p) normal[p] = guess.force[p];
-}
-
 void Solver::start(const Guess* guess) {
-    const bool guessed = guess && guess->tangent.size() == shape.tangent.size();
-    if (guessed) take_guess(*guess);
-    if (guessed || extrapolate_shape()) {
-        if (guessed)
-            freeze_friction(ws.ahead, ws.next.tangent);
-        else
-            freeze_extrapolated();
+    if (propose_shape(guess)) {
         evaluate(frozen, ws.next, ws.trial);
         ++work.evaluations;
         ++work.values;
@@ -208,28 +195,29 @@ void Solver::start(const Guess* guess) {
     ++work.evaluations;
 }
 
-double Solver::pass_tolerance() const {
-    return law.hard || stands() ? 0 : kForcing * std::min(force_change, kRoughest * force_sum);
+double pass_tolerance(const ForceChange& forces) {
+    return kForcing * std::min(forces.change, kRoughest * forces.sum);
 }
 
-bool Solver::forces_settled() const {
-    double change = 0, sum = 0;
+ForceChange Solver::change_of_forces() const {
+    ForceChange out;
     for (std::size_t p = 1; p < fine.size(); ++p) {
-        change += std::abs(ws.at.normal[p] - (law.hard ? frozen.multiplier[p] : normal[p]));
-        sum += ws.at.normal[p];
+        out.change += std::abs(ws.at.normal[p] - (law.hard ? frozen.multiplier[p] : normal[p]));
+        out.sum += ws.at.normal[p];
     }
-    return (law.friction <= 0 && !law.hard) || change <= law.pass_tolerance * (sum + kFaint);
+    return out;
+}
+
+bool Solver::is_settled(const ForceChange& change) const {
+    return (law.friction <= 0 && !law.hard) || change.change <= law.pass_tolerance * (change.sum + kFaint);
 }
 
 bool Solver::take_normal_forces(int pass) {
-    const bool settled = forces_settled();
-    force_change = force_sum = 0;
+    forces = change_of_forces();
     forces_changed = false;
     for (std::size_t p = 1; p < fine.size(); ++p) {
         const double fresh = ws.at.normal[p];
         forces_changed = forces_changed || (law.hard && frozen.multiplier[p] != fresh) || (fresh > 0 && !anchored[p]);
-        force_change += std::abs(fresh - normal[p]);
-        force_sum += fresh;
         if (law.hard) frozen.multiplier[p] = fresh;
         if (fresh > 0 && !anchored[p]) {
             anchor[p] = point(ws.at.node, p);
@@ -237,7 +225,7 @@ bool Solver::take_normal_forces(int pass) {
         }
     }
     if (law.friction > 0 || law.hard) relax(pass);
-    return settled;
+    return is_settled(forces);
 }
 
 void Solver::relax(int pass) {
@@ -262,8 +250,8 @@ void Solver::relax(int pass) {
 }
 
 void Solver::expect_forces() {
-    force_sum = std::accumulate(normal.begin(), normal.end(), 0.0);
-    force_change = law.pass_tolerance * force_sum;
+    forces.sum = std::accumulate(normal.begin(), normal.end(), 0.0);
+    forces.change = law.pass_tolerance * forces.sum;
 }
 
 NewtonResult Solver::minimise_pass(double tolerance, Result& done) {
@@ -280,7 +268,7 @@ Result Solver::run(const Guess* guess) {
     start(guess);
     expect_forces();
     for (out.passes = 1;; ++out.passes) {
-        const double rough = pass_tolerance();
+        const double rough = is_exact() ? 0 : pass_tolerance(forces);
         NewtonResult r = minimise_pass(rough, out);
         if (r.converged && rough > law.tolerance && forces_settled()) r.converged = minimise_pass(0, out).converged;
         const bool settled = fine.empty() || take_normal_forces(out.passes);

@@ -41,6 +41,15 @@ struct Buffers {
     Workspace newton;
 };
 
+/// What a pass changed of the normal forces that its friction is frozen from, and its forces: sums, B0/L².
+struct ForceChange {
+    double change = 0, sum = 0;
+};
+
+/// Residual to which a pass is solved whose friction comes from forces that changed so: a pass need not be more exact
+/// than its friction.
+double pass_tolerance(const ForceChange& forces);
+
 /// One solve: friction passes around Newton, then the memory moves on.
 struct Solver {
     const Rod& rod;
@@ -61,11 +70,12 @@ struct Solver {
     double recovered = 0;  ///< energy lost by the set going back
     /// The last `take_normal_forces` changed what friction is frozen from.
     bool forces_changed = false;
-    double force_change = 0, force_sum = 0;  ///< sums of those changes and of the forces, B0/L²
+    ForceChange forces;  ///< of the pass before; of the first one, what it is expected to change
     int stalls = 0;
     SolverWork work;
 
     int n() const { return rod.segments(); }
+    bool touches() const { return forces.sum > 0; }
 
     void begin(const Load& load, const Recycled<Vec3>& before);
     /// Returns the anchor of a point that stuck at `last`. Its stretch along the surface is transported with the
@@ -83,21 +93,20 @@ struct Solver {
     bool stands() const;
     /// Displacement of the clamp in this solve over that of the last, 0–2; 0 where it did not move.
     double step_ratio() const { return memory.moved > 0 ? std::min(2.0, moved / memory.moved) : 0; }
-    /// Extrapolates the shape and its nodes by the change of the last solve. Returns false where that is not known.
-    bool extrapolate_shape();
-    /// Takes the guess for the extrapolated shape, and its normal forces.
-    void take_guess(const Guess& guess);
-    /// Freezes friction for the extrapolated shape, or for the present one where the hair stands.
-    void freeze_extrapolated();
-    /// Starts from the guess or the extrapolated shape where Π is lower there with the friction of that shape. Else it
+    /// Prepares another shape to start from in ws.next, with its nodes, and friction frozen for it: that of the guess
+    /// with its normal forces, else the present one extrapolated by the change of the last solve, with the friction of
+    /// the present one where the hair stands. Returns false where neither is known.
+    bool propose_shape(const Guess* guess);
+    /// Starts from the proposed shape where Π is lower there with the friction of that shape. Else it
     /// starts from the shape that moved rigidly with the clamp: friction frozen there points the wrong way and costs
     /// passes.
     void start(const Guess* guess);
-    /// Residual to which this pass is solved: a pass need not be more exact than its friction. 0 where hair stands,
-    /// whose buckling grows from what is left.
-    double pass_tolerance() const;
+    /// Whether its passes must be exact: hair that stands under a load may buckle, which grows from what is left.
+    bool is_exact() const { return law.hard || (touches() && stands()); }
+    ForceChange change_of_forces() const;
+    bool is_settled(const ForceChange& forces) const;
     /// Whether the normal forces of the pass are those that its friction is frozen from.
-    bool forces_settled() const;
+    bool forces_settled() const { return is_settled(change_of_forces()); }
     /// Takes the normal forces of the pass; true when they no longer change.
     bool take_normal_forces(int pass);
     /// Moves N̂ towards the pass' normal forces, by Aitken's rule from the second pass on:

@@ -171,7 +171,6 @@ constexpr double kCareful = 0.006, kOrdinary = 0.03;
 constexpr double kLaid = 0.8;      ///< bend from which the hair lies as it will, radians
 constexpr double kTeleport = 0.5;  ///< lengths; a further jump is no motion to follow
 constexpr int kMaxParts = 8;
-constexpr int kPassesOnTheWay = 2;  ///< over the normal forces; the last part passes on until they settle
 
 }  // namespace
 
@@ -228,11 +227,11 @@ Passed follow_ferrule(SpineStep& step, Spine& spine, const Pose& from, const Pos
     if (step.planes.empty()) return passed;
     Pose last = from;
     if (start && start->known && start->in_parts) {
-        spine = start->spine;
+        spine = start->spines.front();
         last = start->from;
         step.dt = start->dt;
         passed.dissipation = start->dissipation;
-        passed.slip = start->slip;
+        passed.slip = start->slip.front();
     } else {
         const double bend =
             std::acos(std::clamp(glm::dot(spine.memory.tangent.back(), spine.memory.clamp.tangent), -1.0, 1.0));
@@ -241,11 +240,11 @@ Passed follow_ferrule(SpineStep& step, Spine& spine, const Pose& from, const Pos
         last = follow_parts(step, spine, from, to, parts, passed);
         if (start) start->in_parts = parts > 1;
         if (start && parts > 1) {
-            start->spine = spine;
+            start->spines.assign(1, spine);
             start->from = last;
             start->dt = step.dt;
             start->dissipation = passed.dissipation;
-            start->slip = passed.slip;
+            start->slip.assign(1, passed.slip);
         }
     }
     turn_with_spread(p, spine, last, to, step.planes);

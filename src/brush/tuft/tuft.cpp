@@ -148,11 +148,17 @@ void add_spine(const Preset& p, const Spine& spine, Solved solved, const Vec3& l
 }
 
 /// Notes the shape that was found, for another step to the same pose.
-void note_guess(const Spine& spine, StepStart& start) {
+void note_guess(const Tuft& tuft, StepStart& start) {
     start.known = true;
-    start.guess.tangent = spine.memory.tangent;
-    start.guess.force.clear();
-    for (const rod::ContactMemory& c : spine.memory.contact) start.guess.force.push_back(c.force);
+    start.guess.resize(tuft.spines.size());
+    for (std::size_t k = 0; k < tuft.spines.size(); ++k) {
+        rod::Guess& guess = start.guess[k];
+        guess.tangent = tuft.spines[k].memory.tangent;
+        guess.force.clear();
+        for (const rod::ContactMemory& c : tuft.spines[k].memory.contact) guess.force.push_back(c.force);
+    }
+    start.pair_force.resize(tuft.beside.size());
+    for (std::size_t k = 0; k < tuft.beside.size(); ++k) start.pair_force[k] = tuft.beside[k].memory.normal;
 }
 
 /// Bends a tuft of one spine.
@@ -170,10 +176,11 @@ TuftState bend_trunk(Tuft& tuft, const Pose& pose, std::span<const ContactPlane>
     if (p.spine != SpineMethod::table) step.walls = walls;
     Passed passed;
     if (p.spine == SpineMethod::rod) passed = follow_ferrule(step, tuft.trunk(), tuft.pose, pose, start);
-    Solved solved = p.spine == SpineMethod::table
-                        ? bend_by_table(step, tuft.table, tuft.trunk())
-                        : solve_spine(step, tuft.trunk(), passed, start && start->known ? &start->guess : nullptr);
-    if (start) note_guess(tuft.trunk(), *start);
+    Solved solved =
+        p.spine == SpineMethod::table
+            ? bend_by_table(step, tuft.table, tuft.trunk())
+            : solve_spine(step, tuft.trunk(), passed, start && start->known ? &start->guess.front() : nullptr);
+    if (start) note_guess(tuft, *start);
     TuftState state;
     add_spine(p, tuft.trunk(), std::move(solved), Vec3{0}, state);
     return state;
@@ -181,9 +188,10 @@ TuftState bend_trunk(Tuft& tuft, const Pose& pose, std::span<const ContactPlane>
 
 /// Bends the spines of a wide ferrule together.
 TuftState bend_wide(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt,
-                    std::span<const ContactPlane> walls) {
+                    std::span<const ContactPlane> walls, StepStart* start) {
     const Preset& p = tuft.preset;
-    SolvedSpines solved = solve_spines(tuft, pose, planes, walls, dt);
+    SolvedSpines solved = solve_spines(tuft, pose, planes, walls, dt, start);
+    if (start) note_guess(tuft, *start);
     TuftState state{.wide = true, .strips = has_broad_side(p)};
     state.work = solved.work;
     double lost = solved.dissipation;
@@ -245,8 +253,8 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
         spine.rod.plastic_share = p.plastic_share * (kDryPlastic + (1 - kDryPlastic) * tuft.wetness);
     const double part = std::isfinite(dt) ? std::max(0.0, dt) : 0,
                  moved = glm::length(pose.position - tuft.pose.position);
-    TuftState state =
-        tuft.wide() ? bend_wide(tuft, pose, planes, part, walls) : bend_trunk(tuft, pose, planes, part, walls, start);
+    TuftState state = tuft.wide() ? bend_wide(tuft, pose, planes, part, walls, start)
+                                  : bend_trunk(tuft, pose, planes, part, walls, start);
     tuft.pose = pose;
     feel(tuft, state, dt);
     if (tuft.carried) place_geometry(tuft, planes, state);

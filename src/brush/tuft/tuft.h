@@ -99,17 +99,19 @@ struct Tuft : TuftBend {
     bool wide() const { return spines.size() > 1; }
 };
 
-/// What a step of a tuft of one spine leaves for being taken again at the same pose with planes that are little
-/// different: it need not follow the ferrule again, and starts from the shape that it found.
+/// What a step leaves for being taken again at the same pose with planes that are little different: it need not follow
+/// the ferrule again, and starts from the shape that it found.
 struct StepStart {
-    bool known = false;      ///< false: the step fills it
-    bool in_parts = false;   ///< the ferrule went in more than one part
-    Spine spine;             ///< before the last of them
-    Pose from;               ///< where the last part begins
-    double dt = 0;           ///< s, of the last part
-    double dissipation = 0;  ///< of the parts before, B0/L
-    Recycled<Vec3> slip;     ///< of the parts before, as in rod::Result; or none
-    rod::Guess guess;        ///< the shape that was found
+    bool known = false;                     ///< false: the step fills it
+    bool in_parts = false;                  ///< the ferrule went in more than one part
+    Recycled<Spine> spines;                 ///< before the last of them
+    Recycled<rod::PairMemory> pairs;        ///< of the neighbours, likewise
+    Pose from;                              ///< where the last part begins
+    double dt = 0;                          ///< s, of the last part
+    double dissipation = 0;                 ///< of the parts before, B0/L
+    Recycled<Recycled<Vec3>> slip;          ///< of the parts before, of each spine as in rod::Result; or none
+    Recycled<rod::Guess> guess;             ///< the shape that was found, of each spine
+    Recycled<Recycled<double>> pair_force;  ///< normal forces between neighbours that were found; see PairMemory
 };
 
 /// Returns a straight tuft; `seed` places its hair. Throws `Error` for values out of range.

@@ -85,8 +85,14 @@ struct Coupled {
     Recycled<Recycled<rod::Wall>> walls;
     Recycled<rod::CoupledPair> pairs;
 
+    /// Bounds of one solve, and where it starts.
+    struct Start {
+        int most_iterations = 0, most_passes = 0;
+        const StepStart* found = nullptr;  ///< null: extrapolated
+    };
+
     rod::CoupledResult solve(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes,
-                             std::span<const ContactPlane> beside, double dt, int most_iterations) {
+                             std::span<const ContactPlane> beside, double dt, const Start& start) {
         const Preset& p = tuft.preset;
         const std::size_t k_all = tuft.spines.size();
         laws.clear();
@@ -96,7 +102,8 @@ struct Coupled {
         for (const Spine& spine : tuft.spines) {
             const std::size_t count = spine.rest_radius.size();
             laws.push_back(law_of(p, tuft.wetness, 1 / spine.share, dt));
-            laws.back().max_iterations = std::min(laws.back().max_iterations, most_iterations);
+            laws.back().max_iterations = std::min(laws.back().max_iterations, start.most_iterations);
+            laws.back().max_passes = std::min(laws.back().max_passes, start.most_passes);
             obstacles.push_back(obstacles_of_wide(p, spine, NodeAxes(spine.memory), part_of(planes, first, count)));
             walls.push_back(flank_walls(p, spine, pose.rotation, part_of(beside, 2 * first, 2 * count), tuft.wetness));
             first += count;
@@ -104,10 +111,17 @@ struct Coupled {
         Recycled<rod::CoupledRod> rods;
         for (std::size_t k = 0; k < k_all; ++k) {
             Spine& spine = tuft.spines[k];
-            rods.push_back(
-                {&spine.rod, &spine.memory, spine_clamp(p, spine, pose), obstacles[k], &laws[k], {}, walls[k]});
+            rods.push_back({&spine.rod,
+                            &spine.memory,
+                            spine_clamp(p, spine, pose),
+                            obstacles[k],
+                            &laws[k],
+                            {},
+                            walls[k],
+                            start.found ? &start.found->guess[k] : nullptr});
         }
         make_pairs(tuft);
+        for (std::size_t k = 0; start.found && k < pairs.size(); ++k) pairs[k].guess = start.found->pair_force[k];
         return rod::solve_coupled(rods, pairs, coupling_of(p, tuft.wetness));
     }
 
@@ -280,35 +294,74 @@ struct Followed {
     double dissipation = 0;         ///< all parts together
 };
 
-/// Moves the ferrule to `to` in parts that are small enough to be followed.
-Followed follow_pose(Tuft& tuft, const Pose& to, std::span<const ContactPlane> planes,
-                     std::span<const ContactPlane> walls, double dt, Coupled& coupled) {
-    const Preset& p = tuft.preset;
-    const std::size_t k_all = tuft.spines.size();
-    double bend = 0;
-    for (const Spine& spine : tuft.spines) bend = std::max(bend, bend_of_tip(spine));
-    const int parts = planes.empty() ? 1 : count_substeps(p, tuft.pose, to, bend);
-    const double part_dt = dt / parts;
-    Followed out;
-    out.slip.resize(k_all);
-    Pose last = tuft.pose;
-    const rod::Law whole = law_of(p, tuft.wetness, 1, part_dt);
-    for (int k = 1; k <= parts; ++k) {
-        const Pose pose = k == parts ? to : between(tuft.pose, to, static_cast<double>(k) / parts);
-        break_symmetries(tuft, last, pose, planes);
-        const int most = k == parts ? whole.max_iterations : std::max(30, whole.max_iterations / parts);
-        out.result = coupled.solve(tuft, pose, planes, walls, part_dt, most);
-        out.dissipation += out.result.dissipation;
-        out.work += out.result.work;
-        for (std::size_t i = 0; i < k_all; ++i) {
-            const rod::Result& r = out.result.rods[i];
-            tuft.spines[i].pressed = r.contact_energy;
-            out.dissipation += r.dissipation;
-            out.slip[i].resize(r.slip.size(), Vec3{0});
-            for (std::size_t j = 0; j < r.slip.size(); ++j) out.slip[i][j] += r.slip[j];
-        }
-        last = pose;
+/// A motion of the ferrule, and what it meets.
+struct Motion {
+    Pose from, to;
+    std::span<const ContactPlane> planes, walls;
+    double dt = 0;  ///< s
+};
+
+/// Solves the spines where the ferrule came from `m.from` to `m.to`, and adds what follows from it.
+void follow_part(Tuft& tuft, const Motion& m, const Coupled::Start& start, Coupled& coupled, Followed& out) {
+    break_symmetries(tuft, m.from, m.to, m.planes);
+    out.result = coupled.solve(tuft, m.to, m.planes, m.walls, m.dt, start);
+    out.dissipation += out.result.dissipation;
+    out.work += out.result.work;
+    for (std::size_t i = 0; i < tuft.spines.size(); ++i) {
+        const rod::Result& r = out.result.rods[i];
+        tuft.spines[i].pressed = r.contact_energy;
+        out.dissipation += r.dissipation;
+        out.slip[i].resize(r.slip.size(), Vec3{0});
+        for (std::size_t j = 0; j < r.slip.size(); ++j) out.slip[i][j] += r.slip[j];
     }
+}
+
+/// Notes how the spines stand before the last part of the motion, of `dt` seconds, which begins at `from`.
+void note_start(const Tuft& tuft, const Pose& from, double dt, const Followed& passed, StepStart& start) {
+    start.spines = tuft.spines;
+    start.pairs.clear();
+    for (const Beside& beside : tuft.beside) start.pairs.push_back(beside.memory);
+    start.from = from;
+    start.dt = dt;
+    start.dissipation = passed.dissipation;
+    start.slip = passed.slip;
+}
+
+/// Takes the spines back to before the last part of the motion. Returns where that begins.
+Pose take_start(const StepStart& start, Tuft& tuft, double& dt, Followed& passed) {
+    tuft.spines = start.spines;
+    for (std::size_t k = 0; k < tuft.beside.size(); ++k) tuft.beside[k].memory = start.pairs[k];
+    dt = start.dt;
+    passed.dissipation = start.dissipation;
+    passed.slip = start.slip;
+    return start.from;
+}
+
+/// Moves the ferrule to `m.to` in parts that are small enough to be followed.
+Followed follow_pose(Tuft& tuft, const Motion& m, Coupled& coupled, StepStart* start) {
+    const Preset& p = tuft.preset;
+    const rod::Law law = law_of(p, tuft.wetness, 1, m.dt);
+    const int most = law.max_iterations;
+    Followed out;
+    out.slip.resize(tuft.spines.size());
+    Motion last = m;
+    if (start && start->known && start->in_parts) {
+        last.from = take_start(*start, tuft, last.dt, out);
+    } else {
+        double bend = 0;
+        for (const Spine& spine : tuft.spines) bend = std::max(bend, bend_of_tip(spine));
+        const int parts = m.planes.empty() ? 1 : count_substeps(p, m.from, m.to, bend);
+        last.dt = m.dt / parts;
+        for (int k = 1; k < parts; ++k) {
+            last.to = between(m.from, m.to, static_cast<double>(k) / parts);
+            follow_part(tuft, last, {std::max(30, most / parts), kPassesOnTheWay}, coupled, out);
+            last.from = last.to;
+        }
+        last.to = m.to;
+        if (start) start->in_parts = parts > 1;
+        if (start && parts > 1) note_start(tuft, last.from, last.dt, out, *start);
+    }
+    follow_part(tuft, last, {most, law.max_passes, start && start->known ? start : nullptr}, coupled, out);
     return out;
 }
 
@@ -355,10 +408,10 @@ Neighbours neighbours_of(const Tuft& tuft, std::size_t k, const Recycled<Recycle
 }  // namespace
 
 SolvedSpines solve_spines(Tuft& tuft, const Pose& to, std::span<const ContactPlane> planes,
-                          std::span<const ContactPlane> walls, double dt) {
+                          std::span<const ContactPlane> walls, double dt, StepStart* start) {
     const Preset& p = tuft.preset;
     Coupled coupled;
-    auto [result, work, slip, dissipation] = follow_pose(tuft, to, planes, walls, dt, coupled);
+    auto [result, work, slip, dissipation] = follow_pose(tuft, {tuft.pose, to, planes, walls, dt}, coupled, start);
     SolvedSpines out;
     out.dissipation = dissipation;
     out.work = work;

@@ -52,8 +52,8 @@ struct SolvedSpines {
 };
 
 /// Moves all spines from the tuft's pose to `to` in small steps and solves them there over `dt` seconds. `planes` and
-/// `walls` as in `step`.
+/// `walls` and `start` as in `step`.
 SolvedSpines solve_spines(Tuft& tuft, const Pose& to, std::span<const ContactPlane> planes,
-                          std::span<const ContactPlane> walls, double dt);
+                          std::span<const ContactPlane> walls, double dt, StepStart* start = nullptr);
 
 }  // namespace tuft::brush

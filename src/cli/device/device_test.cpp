@@ -90,6 +90,8 @@ int test_device(const DeviceWork& a) {
                {"simulated_s", static_cast<double>(worst.periods) * haptic::kPeriod},
                {"contacts", worst.contacts},
                {"most_evaluations", worst.most_evaluations},
+               {"mean_evaluations",
+                static_cast<double>(worst.evaluations) / static_cast<double>(std::max<std::size_t>(worst.solves, 1))},
                {"unconverged_percent", percent(worst.unconverged, worst.solves)},
                {"solve_us",
                 {{"p50", 1e6 * quantile(solves, 0.5)},

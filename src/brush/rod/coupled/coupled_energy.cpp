@@ -90,7 +90,7 @@ void CoupledSystem::freeze_pairs() {
     }
 }
 
-double CoupledSystem::add_coupling(Evaluation Workspace::*which) {
+double CoupledSystem::add_coupling(Evaluation Workspace::*which, bool derivatives) {
     double value = 0;
     for (FrozenPair& f : pairs_) {
         Evaluation &a = solvers_[f.pair->first].ws.*which, &b = solvers_[f.pair->second].ws.*which;
@@ -101,31 +101,27 @@ double CoupledSystem::add_coupling(Evaluation Workspace::*which) {
             const double touching = pair.touching[i], faces = frozen.faces;
             const PairEnergy u = pair_energy(pair.law_at(law_, i), touching,
                                              pair.spread.empty() ? touching : pair.spread[i], glm::dot(d, frozen.row));
-            Vec3 slope = -faces * u.force * frozen.row;
-            Sym3 curvature = faces * std::max(u.stiffness, 0.0) * outer(frozen.row);
-            double energy = faces * u.value;
-            f.normal[i] = faces * u.normal;
-            if (law_.shear > 0) {
-                const Vec3& m = frozen.across;
-                const Slider out = slider(law_.shear, frozen.cap, glm::dot(d, m) - pair.memory->slip[i].y);
-                energy += out.energy;
-                slope += out.force * m;
-                curvature += out.stiffness * outer(m);
-            }
+            const Vec3& m = frozen.across;
+            Slider out;
+            if (law_.shear > 0) out = slider(law_.shear, frozen.cap, glm::dot(d, m) - pair.memory->slip[i].y);
             const double w = f.weight[i];
-            value += w * energy;
+            value += w * (faces * u.value + out.energy);
+            if (!derivatives) continue;
+            f.normal[i] = faces * u.normal;
+            const Vec3 slope = out.force * m - faces * u.force * frozen.row;
+            const Sym3 curvature = faces * std::max(u.stiffness, 0.0) * outer(frozen.row) + out.stiffness * outer(m);
             a.slope[i] -= w * slope;
             b.slope[i] += w * slope;
             f.curvature[i] = w * curvature;
             a.curvature[i] += f.curvature[i];
             b.curvature[i] += f.curvature[i];
         }
-        if (law_.shear > 0) value += add_shear(f, which);
+        if (law_.shear > 0) value += add_shear(f, which, derivatives);
     }
     return value;
 }
 
-double CoupledSystem::add_shear(FrozenPair& f, Evaluation Workspace::*which) {
+double CoupledSystem::add_shear(FrozenPair& f, Evaluation Workspace::*which, bool derivatives) {
     const Solver &first = solvers_[f.pair->first], &second = solvers_[f.pair->second];
     Evaluation &a = solvers_[f.pair->first].ws.*which, &b = solvers_[f.pair->second].ws.*which;
     double value = 0;
@@ -134,15 +130,13 @@ double CoupledSystem::add_shear(FrozenPair& f, Evaluation Workspace::*which) {
         const double la = first.rod.length[j], lb = second.rod.length[j], l = std::min(la, lb);
         const Vec3 ta = (a.node[j + 1] - a.node[j]) / la, tb = (b.node[j + 1] - b.node[j]) / lb;
         const Vec3 d = b.node[j + 1] - a.node[j + 1];
-        SegmentShear& s = f.shear[j];
-        s.mean = 0.5 * (ta + tb);
-        s.half_distance = 0.5 * d;
+        const Vec3 mean = 0.5 * (ta + tb);
         const double rest = f.pair->rest_shift.empty() ? 0 : f.pair->rest_shift[j];
         const double cap = 0.5 * (f.node[j].cap + f.node[j + 1].cap);
-        const Slider out = slider(law_.shear, cap, glm::dot(s.mean, d) - rest - f.pair->memory->slip[j].x);
+        const Slider out = slider(law_.shear, cap, glm::dot(mean, d) - rest - f.pair->memory->slip[j].x);
         value += l * out.energy;
-        s.force = l * out.force;
-        s.stiffness = l * out.stiffness;
+        if (!derivatives) continue;
+        const SegmentShear& s = f.shear[j] = {l * out.force, l * out.stiffness, mean, 0.5 * d};
         a.slope[j + 1] -= s.force * s.mean;
         b.slope[j + 1] += s.force * s.mean;
     }
@@ -151,11 +145,20 @@ double CoupledSystem::add_shear(FrozenPair& f, Evaluation Workspace::*which) {
 
 void CoupledSystem::evaluate_all() {
     value_ = 0;
-    for (Solver& s : solvers_) {
+    own_slope_.resize(solvers_.size());
+    for (std::size_t k = 0; k < solvers_.size(); ++k) {
+        Solver& s = solvers_[k];
         evaluate(s.frozen, s.shape, s.ws.at);
+        own_slope_[k] = s.ws.at.slope;
         value_ += s.ws.at.value;
     }
-    value_ += add_coupling(&Workspace::at);
+    value_ += add_coupling(&Workspace::at, true);
+}
+
+double CoupledSystem::value_of_next() {
+    double value = 0;
+    for (Solver& s : solvers_) value += value_of(s.frozen, s.ws.next, s.ws.trial);
+    return value + add_coupling(&Workspace::trial, false);
 }
 
 void CoupledSystem::differentiate() {
@@ -206,18 +209,36 @@ int CoupledSystem::newton_step(bool) {
     return usable ? cost : 0;
 }
 
-double CoupledSystem::try_step(double scale) {
-    trial_value_ = 0;
+void CoupledSystem::advance_all(double scale) {
     std::size_t first = 0;
     for (Solver& s : solvers_) {
         const std::size_t size = 2 * s.shape.tangent.size();
         advance(s.shape, std::span(step_).subspan(first, size), scale, s.ws.next);
-        evaluate(s.frozen, s.ws.next, s.ws.trial);
-        trial_value_ += s.ws.trial.value;
         first += size;
     }
-    trial_value_ += add_coupling(&Workspace::trial);
+}
+
+void CoupledSystem::complete_step() {
+    trial_value_ = 0;
+    trial_slope_.resize(solvers_.size());
+    for (std::size_t k = 0; k < solvers_.size(); ++k) {
+        Solver& s = solvers_[k];
+        evaluate(s.frozen, s.ws.next, s.ws.trial);
+        trial_slope_[k] = s.ws.trial.slope;
+        trial_value_ += s.ws.trial.value;
+    }
+    trial_value_ += add_coupling(&Workspace::trial, true);
+}
+
+double CoupledSystem::try_step(double scale) {
+    advance_all(scale);
+    complete_step();
     return trial_value_;
+}
+
+double CoupledSystem::probe_step(double scale) {
+    advance_all(scale);
+    return value_of_next();
 }
 
 void CoupledSystem::accept() {
@@ -225,6 +246,7 @@ void CoupledSystem::accept() {
         std::swap(s.shape, s.ws.next);
         std::swap(s.ws.at, s.ws.trial);
     }
+    std::swap(own_slope_, trial_slope_);
     value_ = trial_value_;
 }
 

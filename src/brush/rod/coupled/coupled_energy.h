@@ -55,28 +55,36 @@ class CoupledSystem {
     void differentiate_twice();
     int newton_step(bool by_eigenvectors);
     double try_step(double scale);
-    double probe_step(double scale) { return try_step(scale); }
-    void complete_step() {}
+    double probe_step(double scale);
+    void complete_step();
     void accept();
 
     /// Freezes the directions and the friction of the pairs for nodes that lie as in `at`.
     void freeze_pairs();
     /// Evaluates Π at the shapes; with it the terms that `differentiate` reads.
     void evaluate_all();
-    /// Adds the coupling to evaluations of all rods and returns its energy.
-    double add_coupling(Evaluation Workspace::*which);
-    /// Shear along the hair of one pair; returns its energy.
-    double add_shear(FrozenPair& pair, Evaluation Workspace::*which);
+    /// Returns Π alone at ws.next of all rods. Their ws.trial is undefined afterwards.
+    double value_of_next();
+    /// ∂Π/∂x of the nodes of rod k without the coupling, at the shapes. [n+1]
+    Recycled<Vec3>& own_slope(std::size_t k) { return own_slope_[k]; }
     /// Solves (H + damping) u = −gradient; false where the matrix is not positive definite.
     bool descend(double damping);
     /// H, dense and symmetric, for tests.
     Eigen::MatrixXd dense() const;
 
   private:
+    /// Moves ws.next of all rods to `scale` · step.
+    void advance_all(double scale);
+    /// Adds the coupling to evaluations of all rods and returns its energy. Without `derivatives` it changes nothing.
+    double add_coupling(Evaluation Workspace::*which, bool derivatives);
+    /// Shear along the hair of one pair; likewise.
+    double add_shear(FrozenPair& pair, Evaluation Workspace::*which, bool derivatives);
+
     std::span<Solver> solvers_;
     std::span<FrozenPair> pairs_;
     const CouplingLaw& law_;
     double value_ = 0, trial_value_ = 0;
+    Recycled<Recycled<Vec3>> own_slope_, trial_slope_;
     Recycled<double> gradient_, step_;
 };
 

@@ -41,35 +41,50 @@ void start_pairs(Work& w) {
     double part = 2;
     for (const Solver& s : w.solvers) part = std::min(part, s.stands() ? 0 : s.step_ratio());
     for (FrozenPair& f : w.pairs) {
+        if (f.pair->guess.size() == f.lagged.size()) {
+            f.lagged.assign(f.pair->guess.begin(), f.pair->guess.end());
+            continue;
+        }
         for (std::size_t i = 0; i < f.lagged.size(); ++i)
             f.lagged[i] = std::max(0.0, f.normal[i] + part * f.pair->memory->growth[i]);
     }
 }
 
-/// Starts all rods from their extrapolated shapes where the sum of Π is lower there.
-void start(Work& w, CoupledSystem& system) {
-    bool extrapolated = true;
-    for (Solver& s : w.solvers) extrapolated = extrapolated && s.extrapolate_shape();
-    for (Solver& s : w.solvers) s.freeze_friction(s.memory.node, s.shape.tangent);
-    system.evaluate_all();
+/// Starts all rods from their proposed shapes where Π is lower there, as one rod does; `work`: what that takes.
+void start(std::span<const CoupledRod> rods, Work& w, CoupledSystem& system, SolverWork& work) {
+    bool proposed = true;
+    for (std::size_t k = 0; k < rods.size(); ++k) proposed = w.solvers[k].propose_shape(rods[k].guess) && proposed;
+    ++work.evaluations;
+    if (proposed) {
+        for (Solver& s : w.solvers) {
+            s.ws.at.node = s.ws.ahead;
+            std::swap(s.shape, s.ws.next);
+        }
+        system.freeze_pairs();
+        system.evaluate_all();
+        ++work.values;
+        if (system.value() < system.value_of_next()) return;
+        for (Solver& s : w.solvers) std::swap(s.shape, s.ws.next);
+        ++work.evaluations;
+    }
+    for (Solver& s : w.solvers) {
+        s.ws.at.node = s.memory.node;
+        s.freeze_friction(s.memory.node, s.shape.tangent);
+    }
     system.freeze_pairs();
     system.evaluate_all();
-    if (!extrapolated) return;
-    const double kept = system.value();
-    for (Solver& s : w.solvers) {
-        s.freeze_extrapolated();
-        std::swap(s.shape, s.ws.next);
+}
+
+/// Residual to which the next pass is solved: one rod's for the mean of their forces. Rods that are lifted have none,
+/// and wait for the others.
+double tolerance_of_pass(const Work& w) {
+    ForceChange mean;
+    for (const Solver& s : w.solvers) {
+        if (s.is_exact()) return 0;
+        mean.change += s.forces.change / static_cast<double>(w.solvers.size());
+        mean.sum += s.forces.sum / static_cast<double>(w.solvers.size());
     }
-    system.evaluate_all();
-    if (system.value() < kept) {
-        system.freeze_pairs();
-    } else {
-        for (Solver& s : w.solvers) {
-            std::swap(s.shape, s.ws.next);
-            s.freeze_friction(s.memory.node, s.shape.tangent);
-        }
-    }
-    system.evaluate_all();
+    return pass_tolerance(mean);
 }
 
 Recycled<FrozenNode> nodes_of(std::span<const FrozenPair> pairs) {
@@ -186,9 +201,8 @@ CoupledResult solve_coupled(std::span<const CoupledRod> rods, std::span<const Co
     CoupledResult out;
     out.rods.resize(rods.size());
     const Law& limits = *rods.front().law;
-    start(w, system);
+    start(rods, w, system, out.work);
     int iterations = 0, passes = 1, stalls = 0;
-    out.work.evaluations = 4;  // of `start`
     bool converged = false;
     for (Solver& s : w.solvers) s.expect_forces();
     const auto minimise_pass = [&](double tolerance) {
@@ -200,8 +214,7 @@ CoupledResult solve_coupled(std::span<const CoupledRod> rods, std::span<const Co
         return r;
     };
     for (;; ++passes) {
-        double rough = std::numeric_limits<double>::infinity();
-        for (const Solver& s : w.solvers) rough = std::min(rough, s.pass_tolerance());
+        const double rough = tolerance_of_pass(w);
         NewtonResult r = minimise_pass(rough);
         const bool settles = std::all_of(w.solvers.begin(), w.solvers.end(),
                                          [](const Solver& s) { return s.fine.empty() || s.forces_settled(); });
@@ -233,7 +246,7 @@ CoupledResult solve_coupled(std::span<const CoupledRod> rods, std::span<const Co
         r.iterations = iterations;
         r.passes = passes;
         Solver& s = w.solvers[k];
-        evaluate(s.frozen, s.shape, s.ws.at);  // without the forces of its neighbours
+        s.ws.at.slope = system.own_slope(k);  // without the forces of its neighbours
         s.finish(r);
     }
     return out;
@@ -245,7 +258,8 @@ double elimination_residual(std::span<const CoupledRod> rods, std::span<const Co
     Work w;
     begin(rods, pairs, buffers, w);
     CoupledSystem system(w.solvers, w.pairs, law);
-    start(w, system);
+    SolverWork work;
+    start(rods, w, system, work);
     system.differentiate();
     system.differentiate_twice();
     if (!system.descend(0)) return std::numeric_limits<double>::infinity();

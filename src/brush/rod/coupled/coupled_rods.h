@@ -71,6 +71,7 @@ struct CoupledPair {
     Recycled<double> film;        ///< [m+1] W over that of the law, 0–1, or empty: 1
     Recycled<double> rest_shift;  ///< [m] s₀, or empty: 0
     PairMemory* memory = nullptr;
+    std::span<const double> guess;  ///< [m+1] normal force to start from in place of the memory's, or empty
 
     /// The law between nodes i.
     CouplingLaw law_at(const CouplingLaw& law, int i) const { return film.empty() ? law : law.with_film(film[i]); }
@@ -85,6 +86,7 @@ struct CoupledRod {
     const Law* law = nullptr;
     Load load;
     std::span<const Wall> walls;
+    const Guess* guess = nullptr;  ///< for all rods, or for none
 };
 
 /// How a pair stands after a solve. [m+1]
