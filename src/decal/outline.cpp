@@ -17,6 +17,10 @@ constexpr double kStraight = 5e-6;    // metres: points nearer than this to the 
 constexpr double kWidestClosing = 3;  // of `join`: with hardly a bleed nothing bridges gaps
 constexpr double kLeastHole = 3;      // of the bleed, or half of `join`: smaller holes are a nuisance to cut and lay
 
+/// Cells between the rim of the grid and the first row. A regular mesh then has no edge along a row, whose samples
+/// would lie in both triangles or in none.
+const Vec2 kOffGrid{1.382, 1.236};
+
 Grid grid_over(const PrintSurface& surface, double margin, double texel) {
     Box2 box{surface.flat[0], surface.flat[0]};
     for (const auto& face : surface.faces)
@@ -25,9 +29,9 @@ Grid grid_over(const PrintSurface& surface, double margin, double texel) {
     const Vec2 size = box.size() + Vec2(2 * margin);
     Grid grid;
     grid.cell = std::max({kLeastCell, texel, std::sqrt(size.x * size.y / kMostCells)});
-    grid.width = static_cast<int>(std::ceil(size.x / grid.cell)) + 3;
-    grid.height = static_cast<int>(std::ceil(size.y / grid.cell)) + 3;
-    grid.origin = box.lo - Vec2(margin + grid.cell);
+    grid.width = static_cast<int>(std::ceil(size.x / grid.cell)) + 4;
+    grid.height = static_cast<int>(std::ceil(size.y / grid.cell)) + 4;
+    grid.origin = box.lo - Vec2(margin) - grid.cell * kOffGrid;
     return grid;
 }
 

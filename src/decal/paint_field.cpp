@@ -66,12 +66,12 @@ class PaintFinder {
 
     PaintField find() {
         for (std::size_t t = 0; t < surface_.faces.size(); ++t) sample(t);
-        for (std::size_t i = 0; i < own_.size(); ++i) {
-            float& value = field_.painted.value[i];
-            if (own_[i] >= 0) value = own_[i] - static_cast<float>(kPainted);
-            if (extent_[i] && !(value > 0)) value = kThin;
-            field_.any = field_.any || value > 0;
-        }
+        for (std::size_t i = 0; i < own_.size(); ++i)
+            if (own_[i] >= 0) field_.painted.value[i] = own_[i] - static_cast<float>(kPainted);
+        for (int y = 1; y + 1 < grid_.height; ++y)
+            for (int x = 1; x + 1 < grid_.width; ++x)
+                if (is_thin(x, y)) field_.painted.value[grid_.index(x, y)] = kThin;
+        for (const float value : field_.painted.value) field_.any = field_.any || value > 0;
         find_rim();
         find_crossings();
         return std::move(field_);
@@ -109,6 +109,15 @@ class PaintFinder {
                 face_[at] = static_cast<std::uint32_t>(t);
                 own_[at] = static_cast<float>(middle);
             }
+    }
+
+    /// Whether paint lies in the cell of a node, but neither on it nor on those next to it.
+    bool is_thin(int x, int y) const {
+        if (extent_[grid_.index(x, y)] == 0) return false;
+        for (const std::size_t i : {grid_.index(x, y), grid_.index(x - 1, y), grid_.index(x + 1, y),
+                                    grid_.index(x, y - 1), grid_.index(x, y + 1)})
+            if (own_[i] > kPainted) return false;
+        return true;
     }
 
     /// Finds where the rim of the surface crosses edges of the grid.
