@@ -30,9 +30,10 @@ struct Outline {
 /// than g − bleed from what is not. So the cut line runs `bleed` outside the paint and bridges gaps; with g = (¼ join²
 /// + bleed²) / 2 bleed two points `join` apart share a piece, and broad islands a little further apart do too. Holes
 /// smaller than a disc of radius 3 max(bleed, join / 2) are film. The film ends at seams, or `overlap` beyond them.
-/// Beyond other borders of the panel it goes on in the plane. Distances are exact on a grid [Felzenszwalb2012] of cells
-/// of a texel, at least 0.1 mm, and at most 4 million of them; the line is within half a cell. Pieces with less than
-/// 0.05 mm² of paint are left out.
+/// Beyond other borders of the panel it goes on in the plane. The paint ends where its coverage is a half, found
+/// between the nodes of a grid (paint_field.h) of cells of a texel, at least 0.1 mm, and at most 4 million of them;
+/// distances from there are those of level_set.h. So the line is within a tenth of a cell and 10 µm. Pieces with less
+/// than 0.05 mm² of paint are left out.
 std::vector<Outline> find_outlines(const FilmMesh& film, const Panel& panel, const PrintSurface& surface,
                                    const CoverageFn& coverage, const OutlineOptions& options);
 

@@ -1,6 +1,7 @@
 #include "decal/print_surface.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <queue>
@@ -9,6 +10,7 @@
 
 #include "atlas/flatten/flatten.h"
 #include "atlas/seams/half_edges.h"
+#include "core/geometry/segment.h"
 
 namespace tuft::decal {
 namespace {
@@ -28,12 +30,16 @@ class Strip {
     }
 
     void grow() {
+        std::vector<Entry> first;
         for (std::uint32_t h = 0; h < panel_.is_seam.size(); ++h) {
             if (!panel_.is_seam[h]) continue;
             const std::uint32_t g = twin_[3 * panel_.chart.triangles[h / 3] + h % 3];
             if (film_.label[g / 3] == own_label_) continue;  // a slit of the panel itself
-            enter(g, panel_.chart.faces[h / 3][(h % 3 + 1) % 3], panel_.chart.faces[h / 3][h % 3], 0);
+            const std::uint32_t a = panel_.chart.faces[h / 3][(h % 3 + 1) % 3], b = panel_.chart.faces[h / 3][h % 3];
+            first.push_back({0, g, a, b});
+            seams_.push_back({flat_[a], flat_[b]});
         }
+        for (const Entry& e : first) enter(e.half, e.first, e.second);
         while (!queue_.empty()) {
             const Entry e = queue_.top();
             queue_.pop();
@@ -54,8 +60,19 @@ class Strip {
         bool operator<(const Entry& o) const { return distance != o.distance ? distance > o.distance : half > o.half; }
     };
 
-    void enter(std::uint32_t half, std::uint32_t first, std::uint32_t second, double distance) {
-        if (used_[half / 3] || distance >= reach_(film_.label[half / 3])) return;
+    /// How far an edge that is laid flat lies from the seams.
+    double seam_distance(const Vec2& a, const Vec2& b) const {
+        double least = std::numeric_limits<double>::infinity();
+        for (const auto& [c, d] : seams_)
+            least = std::min({least, segment_distance(c, d, a), segment_distance(c, d, b), segment_distance(a, b, c),
+                              segment_distance(a, b, d)});
+        return least;
+    }
+
+    void enter(std::uint32_t half, std::uint32_t first, std::uint32_t second) {
+        if (used_[half / 3]) return;
+        const double distance = seam_distance(flat_[first], flat_[second]);
+        if (distance >= reach_(film_.label[half / 3])) return;
         queue_.push({distance, half, first, second});
     }
 
@@ -66,7 +83,6 @@ class Strip {
         const Vec3 a = chart_.position[e.first], b = chart_.position[e.second];
         const Vec3 c = Vec3(film_.mesh.positions[apex]) - origin();
         auto [it, fresh] = vertex_.emplace(apex, static_cast<std::uint32_t>(chart_.position.size()));
-        double distance = std::min(glm::length(c - a), glm::length(c - b)) + e.distance;
         if (fresh) {
             const Vec3 x = b - a, y = c - a;
             const double along = glm::dot(x, y) / glm::dot(x, x);
@@ -84,7 +100,7 @@ class Strip {
         chart_.triangles.push_back(t);
         for (const std::uint32_t h : {mesh::next_half(e.half), mesh::prev_half(e.half)}) {
             const std::uint32_t g = twin_[h];
-            if (g != kNone && film_.label[g / 3] != own_label_) enter(g, face[(h % 3 + 1) % 3], face[h % 3], distance);
+            if (g != kNone && film_.label[g / 3] != own_label_) enter(g, face[(h % 3 + 1) % 3], face[h % 3]);
         }
     }
 
@@ -111,6 +127,7 @@ class Strip {
     std::vector<Vec2> flat_;
     std::unordered_map<std::uint32_t, std::uint32_t> vertex_;  // of the film mesh, in the strip
     std::priority_queue<Entry> queue_;
+    std::vector<std::pair<Vec2, Vec2>> seams_;  // of the panel, laid flat
 };
 
 }  // namespace

@@ -80,6 +80,24 @@ TEST_F(FilmCommand, GivesTheSameFramesOnAnyNumberOfThreadsAndByTurns) {
         EXPECT_EQ(read(path(std::string("one/") + frame)), read(path(std::string("three/") + frame))) << frame;
 }
 
+// A slash at the end of a folder's name makes no difference; what is no folder is refused before the work begins.
+TEST_F(FilmCommand, WritesItsFramesIntoAnyFolder) {
+    const std::string film = "film " + project() + kView + "--seconds 0.1 --end 0 --quiet -o ";
+    fs::create_directory(path("there"));
+    for (const char* folder : {"new/", "there/"}) {
+        EXPECT_EQ(tuft(film + path(folder)).status, 0) << folder;
+        EXPECT_TRUE(fs::exists(fs::path(path(folder)) / "frame-00001.png")) << folder;
+        EXPECT_EQ(tuft(film + path(folder)).status, 1) << "has frames already: " << folder;
+    }
+    write("file", "x");
+    for (const char* folder : {"file", "file/", "missing/frames", "missing/frames/"}) {
+        const Ran ran = tuft(film + path(folder));
+        EXPECT_EQ(ran.status, 1) << folder;
+        EXPECT_EQ(ran.error_lines(), 1) << ran.err;
+    }
+    EXPECT_FALSE(fs::exists(path("missing")));
+}
+
 TEST_F(FilmCommand, LeavesNoHalfFilm) {
     const std::string p = project();
     // A program in the place of ffmpeg that fails, and one that is never done.

@@ -66,9 +66,7 @@ void check_request(const Decals& a) {
     if (a.print.plates && format_of(a) != ".pdf")
         throw UsageError("--plates: plates are separations, which only a .pdf has");
     check_output(a.output);
-    if (a.guide.empty()) return;
-    std::error_code ec;
-    if (!std::filesystem::is_directory(a.guide, ec)) check_output(a.guide);
+    if (!a.guide.empty()) check_folder(a.guide);
 }
 
 void print_result(const Decals& a, const decal::Sheet& sheet, const std::vector<std::string>& wrote) {

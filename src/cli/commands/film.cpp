@@ -46,7 +46,10 @@ int run(const Film& a) {
     if (!a.output.extension().empty() && !io::is_film_file(a.output))
         throw UsageError(a.output.string() + ": a film is .mp4, .gif or a folder, whose name has no extension");
     io::check_film(a.output);
-    if (io::is_film_file(a.output)) check_output(a.output);
+    if (io::is_film_file(a.output))
+        check_output(a.output);
+    else
+        check_folder(a.output);
     Console console(a.common.quiet);
     const auto project = open_project(a.replay.project, io::Access::read, console);
     const stroke::Model model = replay_model(a.replay, *project, console);

@@ -146,6 +146,16 @@ void check_output(const fs::path& path) {
         throw Error(path.string(), Message("the output folder '{}' cannot be written to", folder.string()));
 }
 
+void check_folder(const fs::path& folder) {
+    const fs::path bare = folder.has_filename() ? folder : folder.parent_path();
+    std::error_code ec;
+    if (!fs::is_directory(bare, ec)) {
+        if (fs::exists(bare, ec)) throw Error(folder.string(), "is a file, not a folder");
+        return check_output(bare);
+    }
+    if (::access(bare.c_str(), W_OK) != 0) throw Error(folder.string(), "the folder cannot be written to");
+}
+
 void check_extension(const fs::path& path, const std::vector<std::string>& allowed) {
     if (path.empty()) return;
     std::string extension = path.extension().string();

@@ -46,6 +46,9 @@ Loaded load_bare(const std::filesystem::path& path, const FileReading& how, Cons
 /// Throws `Error` when a file cannot be written there because its folder is missing or not writable. Call it before
 /// long work. Empty paths are skipped.
 void check_output(const std::filesystem::path& path);
+/// Throws `Error` when `folder` is none that files can be written to and cannot be made, because the folder it lies in
+/// is missing or not writable. A slash at its end makes no difference. Call it before long work.
+void check_folder(const std::filesystem::path& folder);
 /// Throws `UsageError` when the extension is none of `allowed` (".glb" …).
 void check_extension(const std::filesystem::path& path, const std::vector<std::string>& allowed);
 

@@ -4,6 +4,7 @@
 
 #include "atlas/texels/gutter.h"
 #include "core/error.h"
+#include "core/system/parallel.h"
 #include "ink/spectra/srgb.h"
 #include "io/image/icc_profile.h"
 
@@ -11,6 +12,7 @@ namespace tuft::io {
 namespace {
 
 constexpr float kFullCoverage = 0.05f;  // film units, half a micrometre: from here on a texel counts as painted
+constexpr float kBare = 0.05f;          // of the thickest film round it: a texel with less counts as bare
 constexpr float kLeastPlate = 1e-3f;    // film units: a pigment with less is no plate
 constexpr int kSpread = 3;              // texels
 
@@ -36,16 +38,60 @@ ink::AtlasMap<float> coverage_of_mask(std::uint32_t mask, const stroke::Document
     return coverage;
 }
 
-ink::AtlasMap<float> coverage_of_paint(const ink::AtlasMap<float>& amounts) {
-    ink::AtlasMap<float> coverage{amounts.size, 1, {}};
+/// Film on each texel, film units.
+std::vector<float> film_of(const ink::AtlasMap<float>& amounts) {
+    std::vector<float> film;
     const auto n = static_cast<std::size_t>(amounts.channels);
-    coverage.texels.reserve(std::size_t{amounts.size} * amounts.size);
+    film.reserve(amounts.texels.size() / n);
     for (std::size_t i = 0; i < amounts.texels.size(); i += n) {
         float sum = 0;
         for (std::size_t p = 0; p < n; ++p) sum += amounts.texels[i + p];
-        coverage.texels.push_back(std::clamp(sum / kFullCoverage, 0.0f, 1.0f));
+        film.push_back(sum);
     }
-    return coverage;
+    return film;
+}
+
+/// Coverage by paint, and for each texel on the edge of paint the thickest one round it.
+struct PaintCoverage {
+    ink::AtlasMap<float> coverage;
+    std::vector<std::pair<std::size_t, std::size_t>> edge;  // texel and the one that it is a part of
+};
+
+/// Paint covers a texel where there is any. Beside a bare texel the film is that of a part of the texel, so the part is
+/// what it has of the thickest film round it.
+PaintCoverage coverage_of_paint(const ink::AtlasMap<float>& amounts) {
+    const std::vector<float> film = film_of(amounts);
+    const std::size_t n = amounts.size;
+    PaintCoverage paint{{amounts.size, 1, std::vector<float>(film.size(), 0)}, {}};
+    std::vector<std::vector<std::pair<std::size_t, std::size_t>>> edges(n);
+    parallel_for(n, 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t y = begin; y < end; ++y)
+            for (std::size_t x = 0; x < n; ++x) {
+                const std::size_t i = y * n + x;
+                if (!(film[i] > 0)) continue;
+                float least = film[i];
+                std::size_t thickest = i;
+                for (std::size_t v = y > 0 ? y - 1 : 0; v <= y + 1 && v < n; ++v)
+                    for (std::size_t u = x > 0 ? x - 1 : 0; u <= x + 1 && u < n; ++u) {
+                        least = std::min(least, film[v * n + u]);
+                        if (film[v * n + u] > film[thickest]) thickest = v * n + u;
+                    }
+                const bool edge = thickest != i && least < kBare * film[thickest];
+                const float full = edge ? std::max(kFullCoverage, film[thickest]) : kFullCoverage;
+                paint.coverage.texels[i] = std::min(film[i] / full, 1.0f);
+                if (edge) edges[y].emplace_back(i, thickest);
+            }
+    });
+    for (const auto& row : edges) paint.edge.insert(paint.edge.end(), row.begin(), row.end());
+    return paint;
+}
+
+/// Gives texels on the edge of paint the colour of the paint that covers a part of them.
+void sharpen_edges(ink::AtlasMap<std::uint8_t>& colour, const PaintCoverage& paint) {
+    const std::vector<std::uint8_t> before = colour.texels;
+    for (const auto& [texel, thickest] : paint.edge)
+        std::copy_n(before.begin() + static_cast<std::ptrdiff_t>(3 * thickest), 3,
+                    colour.texels.begin() + static_cast<std::ptrdiff_t>(3 * texel));
 }
 
 Maps make_maps(const stroke::Document& painting, const SheetRequest& request) {
@@ -57,11 +103,18 @@ Maps make_maps(const stroke::Document& painting, const SheetRequest& request) {
     const bool painted = !painting.layers().pigments().empty() && !stack.layers.empty();
     if (!painted && (!request.mask || request.plates)) throw Error("nothing is painted: there is no film to cut");
     if (!request.mask || request.plates) maps.amounts = ink::compose_amounts(stack, texels, compose);
-    maps.coverage = request.mask ? coverage_of_mask(request.mask, painting) : coverage_of_paint(maps.amounts);
+    PaintCoverage paint;
+    if (request.mask)
+        paint.coverage = coverage_of_mask(request.mask, painting);
+    else
+        paint = coverage_of_paint(maps.amounts);
     if (!request.plates) maps.amounts = {};
-    if (!request.sheet.prints) return maps;
-    maps.colour = ink::compose_srgb8(stack, texels, painting.appearance().substrate(), compose);
-    decal::spread_colours(maps.colour, maps.coverage, kSpread);
+    if (request.sheet.prints) {
+        maps.colour = ink::compose_srgb8(stack, texels, painting.appearance().substrate(), compose);
+        sharpen_edges(maps.colour, paint);
+        decal::spread_colours(maps.colour, paint.coverage, kSpread);
+    }
+    maps.coverage = std::move(paint.coverage);
     return maps;
 }
 
