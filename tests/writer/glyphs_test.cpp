@@ -106,6 +106,30 @@ TEST(Bundled, AtLeastFortyCharactersAndAnAlphabetAreThere) {
         EXPECT_TRUE(source->find(c).has_value()) << utf8_of(c);
 }
 
+// A poem with its punctuation, and what a word processor makes of quotes and dashes.
+TEST(Bundled, PunctuationIsThere) {
+    const auto source = open_glyphs(bundled_glyphs());
+    for (const char32_t c : std::u32string(U"、，。「」『』《》〈〉・·…—–‘’“”+=")) {
+        const auto glyph = source->find(c);
+        ASSERT_TRUE(glyph) << utf8_of(c);
+        for (const GlyphStroke& s : glyph->strokes)
+            for (const Vec2& p : s.median) {
+                EXPECT_GE(std::min(p.x, p.y), 0) << utf8_of(c);
+                EXPECT_LE(std::max(p.x / glyph->advance, p.y / kSide), 1) << utf8_of(c);
+            }
+    }
+}
+
+TEST(Bundled, AFullWidthFormIsItsCharacterInTheMiddleOfASquare) {
+    const auto source = open_glyphs(bundled_glyphs());
+    const auto line = glyphs_of({U"永？"}, {source.get()})[0];
+    const Glyph narrow = *source->find(U'?');
+    ASSERT_EQ(line.size(), 2u);
+    EXPECT_EQ(line[1].code, U'？');
+    EXPECT_EQ(line[1].advance, kSide);
+    EXPECT_EQ(line[1].strokes[0].median[0].x - narrow.strokes[0].median[0].x, 0.5 * (kSide - narrow.advance));
+}
+
 TEST(Bundled, MissingCharactersAreNamedInOneLine) {
     const auto source = open_glyphs(bundled_glyphs());
     try {

@@ -44,6 +44,25 @@ TEST(Text, ExtentIsThatOfItsSquares) {
     EXPECT_NEAR(length_of(text), 2 * text.style.spacing, 1e-12);
 }
 
+// In a column a letter is as long as its advance on a line, and leans to its own right.
+TEST(Text, LettersLieOnTheirSideInAColumn) {
+    Text text = text_of("\xe6\xb0\xb8I");
+    const double width = length_of(text);
+    const Vec2 line = extent_of(text);
+    text.layout.direction = Direction::vertical;
+    text.layout.spacing = 1;
+    const Vec2 column = extent_of(text);
+    const double letter = text.lines[0][1].advance / kSide;
+    EXPECT_NEAR(column.x, 1, 1e-12);
+    EXPECT_NEAR(column.y, 1 + 0.25 + letter, 1e-12);  // a quarter of the side parts Han from Latin
+    EXPECT_NEAR(line.y, 1, 1e-12);
+    EXPECT_NEAR(width, 1.05 * (1 + letter) + 0.25, 1e-12);
+    const auto lines = outlined_lines(text);
+    const Vec2 stem = lines.back().back() - lines.back().front();  // of I: from its top to its foot
+    EXPECT_LT(stem.x, 0) << "its top is to the right";
+    EXPECT_NEAR(stem.y, 0, 1e-12);
+}
+
 TEST(Text, OutlinesLieInTheirSquares) {
     const Text text = text_of("\xe6\xb0\xb8", 0.02);
     const auto lines = outlined_lines(text);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "brush/preset/preset.h"
 #include "brush/tuft/ferrule.h"
@@ -18,7 +19,7 @@ namespace {
 
 constexpr double kMargin = 80;                 // units of cells around a stroke
 constexpr float kUnder = 0.25f;                // weight of an error under another stroke
-constexpr std::uint64_t kVersion = 11;         // of the fit
+constexpr std::uint64_t kVersion = 12;         // of the fit
 constexpr std::size_t kMostStations = 20'000;  // of a stroke
 constexpr double kMiddlePressure = 0.4;        // that draws the median width
 constexpr double kCoarse = 3;                  // median widths of a line at that pressure: the brush is too coarse
@@ -42,10 +43,6 @@ CacheKey cache_key(std::uint64_t key) {
     CacheKey out("fitted stroke 1");
     out.add(key);
     return out;
-}
-
-Vec2 slanted(const Vec2& p, double slant) {
-    return {p.x + std::tan(slant) * p.y, p.y};
 }
 
 }  // namespace
@@ -92,7 +89,7 @@ Writer::Job Writer::job_of(const Glyph& glyph, std::size_t stroke) const {
     if (glyph.single_line || style.kind != HandKind::brush) {
         job.fit = false;
         const std::vector<Vec2> line = glyph.single_line ? curve_through(own.median) : own.median;
-        for (const Vec2& p : line) job.stations.push_back({slanted(p, style.slant), style.half_width});
+        for (const Vec2& p : line) job.stations.push_back({leaned(p, glyph, style.slant), style.half_width});
         job.stations = resample_stations(job.stations, kStationsApart);
         return job;
     }
@@ -207,7 +204,7 @@ WrittenStroke Writer::motion(const std::vector<Station>& stations, const Glyph& 
     out.trace = samples_of(own, with, at);
     if (style.kind == HandKind::nib && glyph.single_line)
         for (stroke::StrokeSample& s : out.trace.samples) {
-            s.roll = style.edge_angle;
+            s.roll = style.edge_angle - (glyph.sideways ? 0.5 * std::numbers::pi : 0);
             // Its width is the ferrule's: pressed deeper, hair that turns over drags steps into the counter.
             if (brush::can_be_turned(with.preset)) s.pressure = std::min(s.pressure, style.edge_pressure);
         }

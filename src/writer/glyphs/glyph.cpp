@@ -6,6 +6,11 @@
 
 namespace tuft::writer {
 
+Vec2 leaned(const Vec2& p, const Glyph& glyph, double slant) {
+    const double lean = std::tan(slant);
+    return glyph.sideways ? Vec2(p.x, p.y - lean * p.x) : Vec2(p.x + lean * p.y, p.y);
+}
+
 std::u32string characters_of(std::string_view text) {
     if (text.size() > 4 * kMostCharacters)
         throw Error(

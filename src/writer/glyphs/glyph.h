@@ -30,8 +30,14 @@ struct Glyph {
     std::vector<GlyphStroke> strokes;  ///< in the order of writing
     std::vector<Ring> area;            ///< units, filled outline of a font without strokes (nonzero rule)
     double advance = kSide;            ///< units from its origin to that of the next character on a line
+    double down = kSide;               ///< units from its top to that of the next character in a column
+    double after = 0;                  ///< units of space after these, as between Han characters and Latin letters
+    bool sideways = false;             ///< turned clockwise by a quarter, to stand in a column
     bool single_line = false;          ///< of a single-line font: an even pen line, without classes
 };
+
+/// Returns a point of a glyph that leans to the right of its reader by `slant` radians, units.
+Vec2 leaned(const Vec2& p, const Glyph& glyph, double slant);
 
 /// Returns the characters of a UTF-8 text; ill-formed bytes are read as ISO 8859-1. Throws `Error` for a text of more
 /// than `kMostCharacters`.

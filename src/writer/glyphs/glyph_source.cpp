@@ -149,12 +149,37 @@ std::unique_ptr<GlyphSource> open_folder(const fs::path& path) {
     return std::make_unique<Sources>(std::move(all));
 }
 
+constexpr double kThinSpace = 0.2, kSpace = 0.35;  // parts of the side
+
 bool is_blank(char32_t c) {
-    return c == ' ' || c == '\t' || c == 0xA0 || c == 0x3000;
+    return c == ' ' || c == '\t' || c == 0xA0 || (c >= 0x2000 && c <= 0x200A) || c == 0x202F || c == 0x205F ||
+           c == 0x3000;
 }
 
 Glyph blank(char32_t c) {
-    return {.code = c, .advance = c == 0x3000 ? kSide : 0.35 * kSide};
+    const bool wide = c == 0x3000 || c == 0x2001 || c == 0x2003;
+    const bool thin = c == 0x202F || c == 0x2009 || c == 0x200A;
+    return {.code = c, .advance = (wide ? 1 : thin ? kThinSpace : kSpace) * kSide};
+}
+
+/// A full-width form (U+FF01 to U+FF5E) from the character that it is a form of, in the middle of a square.
+std::optional<Glyph> full_width(char32_t code, const std::vector<GlyphSource*>& sources) {
+    if (code < 0xFF01 || code > 0xFF5E) return std::nullopt;
+    for (GlyphSource* source : sources)
+        if (std::optional<Glyph> glyph = source->find(code - 0xFEE0)) {
+            const Vec2 shift(0.5 * (kSide - glyph->advance), 0);
+            for (Ring& ring : glyph->area)
+                for (Vec2& p : ring) p += shift;
+            for (GlyphStroke& s : glyph->strokes) {
+                for (Vec2& p : s.median) p += shift;
+                for (Ring& ring : s.outline)
+                    for (Vec2& p : ring) p += shift;
+            }
+            glyph->code = code;
+            glyph->advance = kSide;
+            return glyph;
+        }
+    return std::nullopt;
 }
 
 }  // namespace
@@ -198,6 +223,8 @@ std::vector<std::vector<Glyph>> glyphs_of(const std::vector<std::u32string>& lin
             for (std::size_t i = 0; i < line.size() && found.size() == line.size(); ++i)
                 if (!found[i]) found[i] = source->find(line[i]);
         }
+        for (std::size_t i = 0; i < line.size() && found.size() == line.size(); ++i)
+            if (!found[i]) found[i] = full_width(line[i], sources);
         std::vector<Glyph>& row = out.emplace_back();
         for (std::size_t i = 0; i < found.size(); ++i)
             if (found[i])

@@ -39,7 +39,8 @@ std::unique_ptr<GlyphSource> open_glyphs(const std::filesystem::path& path);
 /// Returns the folder of the bundled characters.
 std::filesystem::path bundled_glyphs();
 
-/// Returns the glyphs of a text's lines from the first of `sources` that has each; blanks are glyphs without strokes.
+/// Returns the glyphs of a text's lines from the first of `sources` that has each; blanks are glyphs without strokes. A
+/// full-width form that none has is the character that it is a form of, in the middle of a square.
 /// Throws `Error` that names all missing characters in one line.
 std::vector<std::vector<Glyph>> glyphs_of(const std::vector<std::u32string>& lines,
                                           const std::vector<GlyphSource*>& sources);

@@ -14,8 +14,65 @@
 namespace tuft::writer {
 namespace {
 
+constexpr double kBetweenScripts = 0.25;  // parts of the side
+
+/// Length that a glyph takes on its line or in its column, metres.
 double advance_of(const Glyph& glyph, const LayoutOptions& options) {
-    return options.spacing * glyph.advance / kSide * options.side;
+    const double own = options.direction == Direction::vertical ? glyph.down : glyph.advance;
+    return (options.spacing * own + glyph.after) / kSide * options.side;
+}
+
+struct CodeRange {
+    char32_t first, last;
+};
+template <std::size_t N>
+bool is_in(const CodeRange (&ranges)[N], char32_t code) {
+    return std::any_of(std::begin(ranges), std::end(ranges),
+                       [&](const CodeRange& r) { return code >= r.first && code <= r.last; });
+}
+
+bool is_without_form(char32_t c) {
+    static constexpr CodeRange kRanges[] = {{0xAD, 0xAD},     {0x200B, 0x200F}, {0x202A, 0x202E},  {0x2060, 0x2064},
+                                            {0xFE00, 0xFE0F}, {0xFEFF, 0xFEFF}, {0xE0100, 0xE01EF}};
+    return is_in(kRanges, c);
+}
+
+/// Han characters and kana, without punctuation.
+bool is_han(char32_t c) {
+    static constexpr CodeRange kRanges[] = {{0x2E80, 0x2FDF}, {0x3005, 0x3007}, {0x3041, 0x3096},  {0x30A1, 0x30FA},
+                                            {0x3400, 0x9FFF}, {0xF900, 0xFAFF}, {0x20000, 0x3FFFF}};
+    return is_in(kRanges, c);
+}
+
+/// Letters of Latin, Greek and Cyrillic, and digits.
+bool is_western(char32_t c) {
+    static constexpr CodeRange kRanges[] = {{'0', '9'},   {'A', 'Z'},    {'a', 'z'},     {0xC0, 0xD6},
+                                            {0xD8, 0xF6}, {0xF8, 0x24F}, {0x370, 0x52F}, {0x1E00, 0x1FFF}};
+    return is_in(kRanges, c);
+}
+
+/// Middle of a glyph's ink, units.
+Vec2 middle_of_ink(const Glyph& glyph) {
+    Vec2 lo(1e300), hi(-1e300);
+    const auto add = [&](const std::vector<Vec2>& points) {
+        for (const Vec2& p : points) lo = glm::min(lo, p), hi = glm::max(hi, p);
+    };
+    for (const Ring& ring : glyph.area) add(ring);
+    for (const GlyphStroke& s : glyph.strokes) add(s.median);
+    return lo.x <= hi.x ? 0.5 * (lo + hi) : Vec2(0.5 * kSide);
+}
+
+/// Moves every point of a glyph.
+template <class F>
+void map_points(Glyph& glyph, const F& to) {
+    const auto all = [&](std::vector<Vec2>& points) {
+        for (Vec2& p : points) p = to(p);
+    };
+    for (Ring& ring : glyph.area) all(ring);
+    for (GlyphStroke& s : glyph.strokes) {
+        all(s.median);
+        for (Ring& ring : s.outline) all(ring);
+    }
 }
 
 /// A segment of the section in a triangle: crossed edges as keys of their vertices.
@@ -101,7 +158,7 @@ std::vector<std::u32string> lines_of(std::string_view text) {
             lines.push_back(std::move(line));
             line.clear();
             i += written ? 1 : 0;
-        } else if (all[i] != '\r') {
+        } else if (all[i] != '\r' && !is_without_form(all[i])) {
             line.push_back(all[i]);
         }
     }
@@ -109,24 +166,62 @@ std::vector<std::u32string> lines_of(std::string_view text) {
     return lines;
 }
 
+ColumnForm column_form(char32_t code) {
+    static constexpr CodeRange kCorner[] = {{0x3001, 0x3002}, {0xFF0C, 0xFF0C}, {0xFF0E, 0xFF0E}};
+    static constexpr CodeRange kSideways[] = {
+        {0x20, 0xA6},     {0xA8, 0xA8},     {0xAA, 0xAD},     {0xAF, 0xB0},     {0xB2, 0xBB},     {0xBF, 0xD6},
+        {0xD8, 0xF6},     {0xF8, 0x2E9},    {0x2EC, 0x10FF},  {0x1E00, 0x200F}, {0x2010, 0x2015}, {0x2018, 0x201F},
+        {0x2024, 0x2027}, {0x202A, 0x202F}, {0x2032, 0x203A}, {0x2190, 0x2193}, {0x3008, 0x3011}, {0x3014, 0x301F},
+        {0x3030, 0x3030}, {0x30A0, 0x30A0}, {0x30FC, 0x30FC}, {0xFF08, 0xFF09}, {0xFF0D, 0xFF0D}, {0xFF1A, 0xFF1E},
+        {0xFF3B, 0xFF3B}, {0xFF3D, 0xFF3D}, {0xFF3F, 0xFF3F}, {0xFF5B, 0xFF60}};
+    if (is_in(kCorner, code)) return ColumnForm::corner;
+    return is_in(kSideways, code) ? ColumnForm::sideways : ColumnForm::upright;
+}
+
+Glyph in_column(Glyph glyph) {
+    switch (column_form(glyph.code)) {
+        case ColumnForm::upright:
+            break;
+        case ColumnForm::corner: {
+            const Vec2 shift = Vec2(glyph.advance, kSide) - 2.0 * middle_of_ink(glyph);
+            map_points(glyph, [&](const Vec2& p) { return p + shift; });
+            break;
+        }
+        case ColumnForm::sideways:
+            map_points(glyph, [&](const Vec2& p) { return Vec2(p.y, glyph.advance - p.x); });
+            glyph.down = glyph.advance;
+            glyph.advance = kSide;
+            glyph.sideways = true;
+            break;
+    }
+    return glyph;
+}
+
+void space_scripts(std::vector<Glyph>& line) {
+    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+        const char32_t a = line[i].code, b = line[i + 1].code;
+        if ((is_han(a) && is_western(b)) || (is_western(a) && is_han(b))) line[i].after = kBetweenScripts * kSide;
+    }
+}
+
 std::vector<std::vector<Vec2>> place_in_lines(const std::vector<std::vector<Glyph>>& lines,
                                               const LayoutOptions& options) {
     const bool columns = options.direction == Direction::vertical;
+    const double unit = options.side / kSide;
     std::vector<std::vector<Vec2>> out;
     for (std::size_t l = 0; l < lines.size(); ++l) {
         double whole = 0;
-        for (const Glyph& g : lines[l]) whole += columns ? options.spacing * options.side : advance_of(g, options);
+        for (const Glyph& g : lines[l]) whole += advance_of(g, options);
         std::vector<Vec2>& row = out.emplace_back();
         double at = -0.5 * whole;
         const double line = static_cast<double>(l) * options.line_spacing * options.side;
         for (const Glyph& g : lines[l]) {
-            const double step = columns ? options.spacing * options.side : advance_of(g, options);
-            const double own = g.advance / kSide * options.side;  // width of the square of this glyph
+            const double step = advance_of(g, options), room = step - unit * g.after;
             // Corners are at the lower left, y down.
             if (columns)
-                row.emplace_back(-line - 0.5 * own, at + 0.5 * (step + options.side));
+                row.emplace_back(-line - 0.5 * unit * g.advance, at + 0.5 * (room + unit * g.down));
             else
-                row.emplace_back(at + 0.5 * (step - own), line + 0.5 * options.side);
+                row.emplace_back(at + 0.5 * (room - unit * g.advance), line + 0.5 * options.side);
             at += step;
         }
     }
@@ -183,7 +278,7 @@ std::vector<double> place_along(const ModelPath& path, const std::vector<Glyph>&
     double at = middle - 0.5 * whole;
     for (const Glyph& g : glyphs) {
         const double step = advance_of(g, options);
-        out.push_back(at + 0.5 * step);
+        out.push_back(at + 0.5 * (step - g.after / kSide * options.side));
         at += step;
     }
     return out;

@@ -36,12 +36,30 @@ struct LayoutOptions {
     bool operator==(const LayoutOptions&) const = default;
 };
 
-/// Splits a text at newlines ("\n" and the two characters \ n); at least one line.
+/// Splits a text at newlines ("\n" and the two characters \ n); at least one line. Characters without a form, such as
+/// selectors of variants, joiners and byte order marks, are left out.
 std::vector<std::u32string> lines_of(std::string_view text);
 
+/// How a character stands in a column, by the property Vertical_Orientation [UAX50].
+enum class ColumnForm {
+    upright,   ///< as on a line (U)
+    corner,    ///< upright, its ink moved to the opposite corner of the square: 、。，．(Tu)
+    sideways,  ///< turned clockwise by a quarter: Latin, digits, brackets, dashes (R, Tr)
+};
+ColumnForm column_form(char32_t code);
+
+/// Returns a glyph as it stands in a column. A sideways one is as wide as a square, and its advance on a line is its
+/// length in the column.
+Glyph in_column(Glyph glyph);
+
+/// Puts a quarter of the side between a Han character or kana and a Latin, Greek or Cyrillic letter or a digit beside
+/// it
+/// ([JLREQ2020] 3.2.6), as `Glyph::after` of the first of them.
+void space_scripts(std::vector<Glyph>& line);
+
 /// Returns the lower left corner of each glyph's square, metres, y down, in lines of glyphs. Squares of one line stand
-/// `spacing` times their advance apart. Lines and columns are centred on each other. In columns squares are centred on
-/// the column.
+/// `spacing` times their advance, in columns their length (`in_column`), and the space after them apart. Lines and
+/// columns are centred on each other. In columns squares are centred on the column.
 std::vector<std::vector<Vec2>> place_in_lines(const std::vector<std::vector<Glyph>>& lines,
                                               const LayoutOptions& options);
 

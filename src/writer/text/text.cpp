@@ -21,7 +21,7 @@ bool is_drawn(const Glyph& glyph, const Style& style) {
 
 /// The middle of a character's square, metres, y down, from its lower left corner.
 Vec2 middle_of(const Glyph& glyph, double side) {
-    return {0.5 * glyph.advance / kSide * side, -0.5 * side};
+    return {0.5 * glyph.advance / kSide * side, -0.5 * glyph.down / kSide * side};
 }
 
 /// Adds the strokes of one glyph, moved by `shift` (metres, y down), with a placement where there is one.
@@ -73,16 +73,28 @@ ProgressFn part_of(const ProgressFn& progress, std::size_t line, std::size_t lin
 
 /// Adds the lines of a glyph, moved by `shift` (metres, y down).
 void add_outlined(std::vector<std::vector<Vec2>>& lines, const Glyph& glyph, const Text& text, const Vec2& shift) {
-    const double unit = text.layout.side / kSide, slant = is_drawn(glyph, text.style) ? std::tan(text.style.slant) : 0;
+    const double unit = text.layout.side / kSide, slant = is_drawn(glyph, text.style) ? text.style.slant : 0;
     const auto add = [&](const std::vector<Vec2>& points, bool closed) {
         if (points.empty()) return;
         std::vector<Vec2>& line = lines.emplace_back();
-        for (const Vec2& p : points) line.push_back(shift + unit * Vec2(p.x + slant * p.y, -p.y));
+        for (const Vec2& p : points) {
+            const Vec2 q = leaned(p, glyph, slant);
+            line.push_back(shift + unit * Vec2(q.x, -q.y));
+        }
         if (closed) line.push_back(line.front());
     };
     for (const Ring& ring : glyph.area) add(ring, true);
     if (!glyph.area.empty()) return;
     for (const GlyphStroke& stroke : glyph.strokes) add(stroke.median, false);
+}
+
+/// The lines as they are set: in columns, glyphs as they stand there.
+std::vector<std::vector<Glyph>> set_lines(const Text& text) {
+    std::vector<std::vector<Glyph>> lines = text.lines;
+    if (text.layout.direction == Direction::vertical)
+        for (std::vector<Glyph>& line : lines)
+            for (Glyph& glyph : line) glyph = in_column(std::move(glyph));
+    return lines;
 }
 
 const std::vector<Glyph>& only_line(const Text& text) {
@@ -136,6 +148,7 @@ Text TextReader::read(const TextRequest& request) {
     std::vector<std::u32string> lines = lines_of(request.text);
     while (lines.size() > 1 && lines.back().empty()) lines.pop_back();
     text.lines = glyphs_of(lines, order);
+    for (std::vector<Glyph>& line : text.lines) space_scripts(line);
     return text;
 }
 
@@ -152,19 +165,20 @@ Vec2 extent_of(const Text& text) {
     LayoutOptions options = text.layout;
     options.side = 1;
     Vec2 lo(1e300), hi(-1e300);
-    const auto corners = place_in_lines(text.lines, options);
+    const auto lines = set_lines(text);
+    const auto corners = place_in_lines(lines, options);
     for (std::size_t l = 0; l < corners.size(); ++l)
         for (std::size_t i = 0; i < corners[l].size(); ++i) {
             const Vec2 c = corners[l][i];
-            lo = glm::min(lo, c - Vec2(0, 1));
-            hi = glm::max(hi, c + Vec2(text.lines[l][i].advance / kSide, 0));
+            lo = glm::min(lo, c - Vec2(0, lines[l][i].down / kSide));
+            hi = glm::max(hi, c + Vec2(lines[l][i].advance / kSide, 0));
         }
     return glm::max(hi - lo, Vec2(1e-3));
 }
 
 double length_of(const Text& text) {
     double whole = 0;
-    for (const Glyph& g : only_line(text)) whole += text.layout.spacing * g.advance / kSide;
+    for (const Glyph& g : only_line(text)) whole += (text.layout.spacing * g.advance + g.after) / kSide;
     return whole;
 }
 
@@ -180,10 +194,11 @@ std::optional<std::string> size_for(const Text& text, const std::string& brush) 
 void append_lines(std::vector<stroke::JournalEntry>& entries, const Text& text, const TextHand& hand,
                   const ProgressFn& progress) {
     Writer writer = writer_for(text, hand);
-    const auto corners = place_in_lines(text.lines, text.layout);
+    const auto lines = set_lines(text);
+    const auto corners = place_in_lines(lines, text.layout);
     Entries to(entries, text, hand);
-    for (std::size_t l = 0; l < text.lines.size(); ++l) {
-        const auto written = writer.write(text.lines[l], part_of(progress, l, text.lines.size()));
+    for (std::size_t l = 0; l < lines.size(); ++l) {
+        const auto written = writer.write(lines[l], part_of(progress, l, lines.size()));
         for (std::size_t i = 0; i < written.size(); ++i) to.add(written[i], corners[l][i], std::nullopt);
     }
 }
@@ -213,20 +228,21 @@ std::vector<stroke::Placement> places_along(const Text& text, const ModelPath& p
 
 std::vector<std::vector<Vec2>> outlined_lines(const Text& text) {
     std::vector<std::vector<Vec2>> lines;
-    const auto corners = place_in_lines(text.lines, text.layout);
-    for (std::size_t l = 0; l < text.lines.size(); ++l)
-        for (std::size_t i = 0; i < text.lines[l].size(); ++i)
-            add_outlined(lines, text.lines[l][i], text, corners[l][i]);
+    const auto set = set_lines(text);
+    const auto corners = place_in_lines(set, text.layout);
+    for (std::size_t l = 0; l < set.size(); ++l)
+        for (std::size_t i = 0; i < set[l].size(); ++i) add_outlined(lines, set[l][i], text, corners[l][i]);
     return lines;
 }
 
 std::vector<std::vector<Vec2>> middle_lines(const Text& text) {
     std::vector<std::vector<Vec2>> lines;
-    const auto corners = place_in_lines(text.lines, text.layout);
-    for (std::size_t l = 0; l < text.lines.size(); ++l) {
+    const auto set = set_lines(text);
+    const auto corners = place_in_lines(set, text.layout);
+    for (std::size_t l = 0; l < set.size(); ++l) {
         std::vector<Vec2>& line = lines.emplace_back();
-        for (std::size_t i = 0; i < text.lines[l].size(); ++i)
-            line.push_back(corners[l][i] + middle_of(text.lines[l][i], text.layout.side));
+        for (std::size_t i = 0; i < set[l].size(); ++i)
+            line.push_back(corners[l][i] + middle_of(set[l][i], text.layout.side));
     }
     return lines;
 }
