@@ -9,6 +9,7 @@
 #include "ink/spectra/srgb.h"
 #include "stroke/document/document.h"
 #include "stroke/placement/placement.h"
+#include "stroke/surface/flat_sheet.h"
 
 namespace tuft::pictures {
 namespace {
@@ -32,33 +33,13 @@ double rise(double a, double b, double at) {
 
 /// A flat sheet whose texels are `texel` metres; the middle of the picture is its origin, x to the right, y up.
 stroke::Model make_sheet(double texel) {
-    const double x = texel * (0.5 * kWidth + kMargin), y = texel * (0.5 * kHeight + kMargin);
-    const Vec2 middle = Vec2(kColumn + 0.5 * kWidth, kRow + 0.5 * kHeight) / double(kTexels);
-    mesh::PolygonSoup soup;
-    constexpr int n = 8;  // quads along each side
-    for (int j = 0; j <= n; ++j)
-        for (int i = 0; i <= n; ++i) soup.points.emplace_back(x * (2.0 * i / n - 1), y * (2.0 * j / n - 1), 0.0);
-    soup.polygon_start.push_back(0);
-    const auto add = [&](std::initializer_list<int> corners) {
-        for (const int c : corners) {
-            soup.corners.push_back(static_cast<std::uint32_t>(c));
-            soup.corner_uvs.emplace_back(middle +
-                                         Vec2(soup.points[static_cast<std::size_t>(c)]) / (texel * double(kTexels)));
-        }
-        soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
-    };
-    for (int j = 0; j < n; ++j)
-        for (int i = 0; i < n; ++i) {
-            const int a = j * (n + 1) + i, b = a + n + 1;
-            add({a, a + 1, b + 1});
-            add({a, b + 1, b});
-        }
-    stroke::ModelOptions options;
-    options.repair.metres_per_unit = 1;
-    options.unwrap.size = kTexels;
-    options.unwrap.uvs = atlas::UvPolicy::keep;
-    options.texels = atlas::TexelStore::floats;
-    return stroke::prepare_model(std::move(soup), options);
+    const Vec2 picture(kWidth, kHeight), high = texel * (0.5 * picture + double(kMargin));
+    return stroke::make_flat_sheet({.frame = {},
+                                    .low = -high,
+                                    .high = high,
+                                    .texels = kTexels,
+                                    .texel = texel,
+                                    .corner = -texel * (Vec2(kColumn, kRow) + 0.5 * picture)});
 }
 
 stroke::JournalEntry entry_of(const brush::Preset& preset, std::vector<stroke::StrokeSample> samples) {
@@ -120,14 +101,12 @@ TriedStroke picture_of(const stroke::Document& painting) {
     const atlas::TexelMap& map = painting.model().texels;
     for (const std::uint32_t slot : canvas.touched_slots()) {
         const ink::TileAppearance appearance = ink::shade_tile(canvas, slot, paper);
-        const int tile = static_cast<int>(map.tile_of_slot[slot]), per_side = static_cast<int>(map.tiles_per_side);
-        for (int t = 0; t < atlas::kTileTexels; ++t) {
-            const int x = tile % per_side * atlas::kTile + t % atlas::kTile - kColumn;
-            const int y = kHeight - 1 - (tile / per_side * atlas::kTile + t / atlas::kTile - kRow);
+        for (std::uint32_t t = 0; t < atlas::kTileTexels; ++t) {
+            const atlas::TexelPlace at = atlas::texel_place(map, slot, t);
+            const int x = static_cast<int>(at.x) - kColumn, y = kHeight - 1 - (static_cast<int>(at.y) - kRow);
             if (x < 0 || y < 0 || x >= kWidth || y >= kHeight) continue;
             for (std::size_t c = 0; c < 3; ++c)
-                out.rgb[3 * static_cast<std::size_t>(y * kWidth + x) + c] =
-                    code(appearance.colour[c][static_cast<std::size_t>(t)]);
+                out.rgb[3 * static_cast<std::size_t>(y * kWidth + x) + c] = code(appearance.colour[c][t]);
         }
     }
     return out;

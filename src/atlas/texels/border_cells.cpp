@@ -50,9 +50,8 @@ bool before(const TexelRef& a, const TexelRef& b) {
 }
 
 Vec2 texel_centre(const TexelMap& map, const TexelRef& ref) {
-    const std::uint32_t tile = map.tile_of_slot[ref.slot];
-    return {double(tile % map.tiles_per_side) * kTile + ref.texel % kTile + 0.5,
-            double(tile / map.tiles_per_side) * kTile + ref.texel / kTile + 0.5};
+    const TexelPlace at = texel_place(map, ref.slot, ref.texel);
+    return {double(at.x) + 0.5, double(at.y) + 0.5};
 }
 
 TexelRef texel_off(const TexelMap& map, const TexelRef& ref, int dx, int dy) {

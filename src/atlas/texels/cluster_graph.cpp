@@ -117,8 +117,7 @@ void find_inner_meetings(const TexelMap& map, const std::vector<TexelCluster>& c
                          std::vector<Meeting>& found) {
     static constexpr std::array<std::array<int, 2>, 4> kForward{{{1, 0}, {-1, 1}, {0, 1}, {1, 1}}};
     const TexelTile& tile = map.tiles[slot];
-    const std::int64_t x0 = std::int64_t{map.tile_of_slot[slot] % map.tiles_per_side} * kTile;
-    const std::int64_t y0 = std::int64_t{map.tile_of_slot[slot] / map.tiles_per_side} * kTile;
+    const TexelPlace first = texel_place(map, slot, 0);
     const std::uint32_t n_clusters = map.cluster_start[slot + 1] - map.cluster_start[slot];
     for (int t = 0; t < kTileTexels; ++t) {
         if (tile.cluster[t] == kNoCluster) continue;
@@ -127,7 +126,7 @@ void find_inner_meetings(const TexelMap& map, const std::vector<TexelCluster>& c
         if (inner && n_clusters == 1) continue;
         const std::uint32_t i = map.cluster_start[slot] + tile.cluster[t];
         for (const auto& [dx, dy] : kForward) {
-            const TexelRef other = texel_ref(map, x0 + x + dx, y0 + y + dy);
+            const TexelRef other = texel_ref(map, first.x + x + dx, first.y + y + dy);
             if (!other.valid()) continue;
             const std::uint32_t j = map.cluster_start[other.slot] + map.tiles[other.slot].cluster[other.texel];
             if (i == j || clusters[i].chart != clusters[j].chart) continue;

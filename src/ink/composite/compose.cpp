@@ -23,8 +23,8 @@ using TileOut = std::array<std::array<T, C>, kN>;
 /// Writes one tile of a map, clipped to its size; only texels of charts when `map` has them.
 template <class T, int C>
 void write_tile(AtlasMap<T>& image, const atlas::TexelMap& map, std::uint32_t slot, const TileOut<T, C>& out) {
-    const std::uint32_t tile = map.tile_of_slot[slot];
-    const std::uint32_t x0 = tile % map.tiles_per_side * kSide, y0 = tile / map.tiles_per_side * kSide;
+    const atlas::TexelPlace first = atlas::texel_place(map, slot, 0);
+    const auto x0 = static_cast<std::uint32_t>(first.x), y0 = static_cast<std::uint32_t>(first.y);
     const std::uint32_t columns = std::min<std::uint32_t>(kSide, image.size - x0);
     const std::uint32_t rows = std::min<std::uint32_t>(kSide, image.size - y0);
     const auto& cluster = map.tiles[slot].cluster;

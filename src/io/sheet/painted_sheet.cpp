@@ -26,12 +26,11 @@ ink::AtlasMap<float> coverage_of_mask(std::uint32_t mask, const stroke::Document
     const atlas::TexelMap& map = painting.model().texels;
     ink::AtlasMap<float> coverage{map.size, 1, std::vector<float>(std::size_t{map.size} * map.size, 0)};
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
-        const std::uint32_t tile = map.tile_of_slot[slot];
-        const std::size_t x0 = tile % map.tiles_per_side * atlas::kTile, y0 = tile / map.tiles_per_side * atlas::kTile;
-        for (std::size_t t = 0; t < atlas::kTileTexels; ++t) {
-            const std::size_t x = x0 + t % atlas::kTile, y = y0 + t / atlas::kTile;
-            if (x < map.size && y < map.size && map.tiles[slot].cluster[t] != atlas::kNoCluster)
-                coverage.texels[y * map.size + x] = texels.coverage(slot, static_cast<int>(t)) / 255.0f;
+        for (std::uint32_t t = 0; t < atlas::kTileTexels; ++t) {
+            const atlas::TexelPlace at = atlas::texel_place(map, slot, t);
+            if (at.x < map.size && at.y < map.size && map.tiles[slot].cluster[t] != atlas::kNoCluster)
+                coverage.texels[static_cast<std::size_t>(at.y * map.size + at.x)] =
+                    texels.coverage(slot, static_cast<int>(t)) / 255.0f;
         }
     }
     atlas::fill_gutter(painting.appearance().compose_options().seams->gutter, map, 1, coverage.texels);

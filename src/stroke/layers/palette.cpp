@@ -4,12 +4,11 @@
 
 #include "ink/composite/composite.h"
 #include "ink/spectra/kubelka_munk.h"
+#include "stroke/surface/flat_sheet.h"
 
 namespace tuft::stroke {
 namespace {
 
-constexpr double kPaletteCell = 0.01;  // metres, of its mesh
-constexpr int kColumns = 12, kRows = 9;
 constexpr double kPoolEdge = 25;  // film units that stand at the rim of a pool on glaze
 constexpr Vec2 kCorner{kPaletteTexels / 2 * kPaletteTexel, 0.049};  // uv (0, 0) lies at − this
 
@@ -20,33 +19,15 @@ constexpr int kFirstRow = 16;
 }  // namespace
 
 Model make_palette() {
-    mesh::PolygonSoup soup;
-    for (int y = 0; y <= kRows; ++y)
-        for (int x = 0; x <= kColumns; ++x)
-            soup.points.emplace_back(kPaletteCell * x - 0.5 * kPaletteWidth, kPaletteCell * y - 0.5 * kPaletteHeight,
-                                     0.0);
-    soup.polygon_start.push_back(0);
-    const auto add = [&](std::initializer_list<int> corners) {
-        for (const int c : corners) {
-            soup.corners.push_back(static_cast<std::uint32_t>(c));
-            const Vec2 uv =
-                (Vec2(soup.points[static_cast<std::size_t>(c)]) + kCorner) / (kPaletteTexels * kPaletteTexel);
-            soup.corner_uvs.emplace_back(uv);
-        }
-        soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
-    };
-    for (int y = 0; y < kRows; ++y)
-        for (int x = 0; x < kColumns; ++x) {
-            const int a = y * (kColumns + 1) + x, b = a + kColumns + 1;
-            add({a, a + 1, b + 1});
-            add({a, b + 1, b});
-        }
-    ModelOptions options;
-    options.repair.metres_per_unit = 1;
-    options.unwrap.size = kPaletteTexels;
-    options.unwrap.uvs = atlas::UvPolicy::keep;
-    options.texels = atlas::TexelStore::floats;
-    return prepare_model(std::move(soup), options);
+    const Vec2 corner = 0.5 * Vec2(kPaletteWidth, kPaletteHeight);
+    return make_flat_sheet({.frame = {},
+                            .low = -corner,
+                            .high = corner,
+                            .columns = 12,
+                            .rows = 9,
+                            .texels = kPaletteTexels,
+                            .texel = kPaletteTexel,
+                            .corner = -kCorner});
 }
 
 ink::Substrate palette_substrate() {
@@ -120,14 +101,14 @@ void refresh(PalettePicture& picture, const Palette& palette, std::span<const st
     const ink::Substrate substrate = palette_substrate();
     for (const std::uint32_t slot : slots) {
         const ink::TileAppearance appearance = ink::shade_tile(*palette.canvas(), slot, substrate);
-        const int tile = static_cast<int>(map.tile_of_slot[slot]), per_side = static_cast<int>(map.tiles_per_side);
-        for (int t = 0; t < atlas::kTileTexels; ++t) {
-            const int x = tile % per_side * atlas::kTile + t % atlas::kTile - kFirstColumn;
-            const int y = picture.height - 1 - (tile / per_side * atlas::kTile + t / atlas::kTile - kFirstRow);
+        for (std::uint32_t t = 0; t < atlas::kTileTexels; ++t) {
+            const atlas::TexelPlace at = atlas::texel_place(map, slot, t);
+            const int x = static_cast<int>(at.x) - kFirstColumn;
+            const int y = picture.height - 1 - (static_cast<int>(at.y) - kFirstRow);
             if (x < 0 || y < 0 || x >= picture.width || y >= picture.height) continue;
             for (std::size_t c = 0; c < 3; ++c)
-                picture.rgb[3 * static_cast<std::size_t>(y * picture.width + x) + c] = static_cast<std::uint8_t>(
-                    std::lround(255 * ink::srgb_encode(appearance.colour[c][static_cast<std::size_t>(t)])));
+                picture.rgb[3 * static_cast<std::size_t>(y * picture.width + x) + c] =
+                    static_cast<std::uint8_t>(std::lround(255 * ink::srgb_encode(appearance.colour[c][t])));
         }
     }
 }

@@ -97,8 +97,7 @@ void take_borders(Neighbourhood& n, const atlas::SeamLinks& seams, std::uint32_t
 Neighbourhood collect_texels(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot,
                              const FlowMedium& medium) {
     Neighbourhood n;
-    const std::int64_t x0 = std::int64_t{map.tile_of_slot[slot] % map.tiles_per_side} * kSide;
-    const std::int64_t y0 = std::int64_t{map.tile_of_slot[slot] / map.tiles_per_side} * kSide;
+    const auto [x0, y0] = atlas::texel_place(map, slot, 0);
     for (int row = -2; row < kSide + 2; ++row)
         for (int column = -2; column < kSide + 2; ++column) {
             const atlas::TexelRef ref = atlas::texel_ref(map, x0 + column, y0 + row);
