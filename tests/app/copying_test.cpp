@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <cstdlib>
 #include <filesystem>
 
 #include "copied_picture.h"
@@ -35,6 +37,11 @@ class Copying : public testing::Test {
         copy_.edit = edit;
         edit_stroke(edited(), at);
     }
+    void drag(std::size_t stroke, const std::vector<std::size_t>& over) {
+        copy_.dragged = StrokeDrag{stroke};
+        for (const std::size_t place : over) drag_stroke(edited(), place);
+        copy_.dragged.reset();
+    }
     const std::string& order() const { return request_.correction.order; }
     const std::vector<writer::GlyphStroke>& strokes() const { return text_.lines.front().front().strokes; }
 
@@ -50,7 +57,7 @@ class Copying : public testing::Test {
 TEST_F(Copying, EditsAreShownAsTheirCorrectionIsRead) {
     ASSERT_EQ(copy_.shown->order.size(), 2u);
     click(CopyEdit::reverse, horizontal_);
-    move_stroke(edited(), 0, 1, true);
+    drag(0, {1});
     click(CopyEdit::split, vertical_);
     const writer::StrokeOrder shown = copy_.shown->order;
     ASSERT_EQ(shown.size(), 3u);
@@ -94,13 +101,84 @@ TEST_F(Copying, StepsAreTakenBackOneByOneAndTheLastStrokeStays) {
     click(CopyEdit::remove, horizontal_);
     EXPECT_EQ(order(), one);
     EXPECT_EQ(copy_.earlier.size(), 1u) << "what did nothing is no step";
-    for (const double threshold : {0.1, 0.2, 0.3}) correct(edited(), {.threshold = threshold, .cuts = {}, .order = {}});
+    for (const double threshold : {0.1, 0.2, 0.3}) slide_threshold(edited(), threshold);
+    EXPECT_EQ(copy_.earlier.size(), 2u) << "a slide is one step";
     EXPECT_FALSE(edited().ready());
     click(CopyEdit::reverse, horizontal_);
     EXPECT_TRUE(order().empty()) << "strokes of another threshold are not edited";
     while (step_back(edited()))
         ;
     EXPECT_EQ(request_.correction, writer::CopyCorrection{});
+}
+
+TEST_F(Copying, ADragThereAndBackIsOneStep) {
+    const std::string before = writer::order_text(copy_.shown->order);
+    drag(0, {1, 0, 1, 0});
+    EXPECT_EQ(order(), before);
+    EXPECT_EQ(copy_.earlier.size(), 1u);
+    drag(0, {0});
+    EXPECT_EQ(copy_.earlier.size(), 1u) << "one that goes nowhere is none";
+}
+
+// A number in the hand means a stroke of what is shown: of other strokes it means nothing.
+TEST_F(Copying, StrokesInTheHandAreLetGoWhereOthersAreShown) {
+    for (const std::size_t stale : {std::size_t{2}, std::size_t{1} << 40}) {
+        copy_.dragged = StrokeDrag{stale};
+        drag_stroke(edited(), 0);
+        EXPECT_FALSE(copy_.dragged);
+    }
+    EXPECT_TRUE(order().empty());
+    const auto take_both = [&] {
+        click(CopyEdit::join, horizontal_);
+        copy_.dragged = StrokeDrag{1};
+        ASSERT_TRUE(copy_.joined);
+    };
+    const auto expect_free = [&](const char* after) {
+        EXPECT_FALSE(copy_.joined) << after;
+        EXPECT_FALSE(copy_.dragged) << after;
+        read();
+    };
+    take_both();
+    slide_threshold(edited(), 0.1);
+    expect_free("a slide of the threshold");
+    take_both();
+    correct(edited(), {});
+    expect_free("a correction");
+    take_both();
+    step_back(edited());
+    expect_free("a step back");
+    take_both();
+    writer::CopiedPicture other = *copy_.shown;
+    writer::remove_stroke(other.order, 1);
+    copy_.take(other, request_.correction);
+    expect_free("another picture");
+    take_both();
+    copy_.take(*copy_.shown, request_.correction);
+    EXPECT_TRUE(copy_.joined && copy_.dragged) << "the same strokes read again";
+    drag_stroke(edited(), 0);
+    EXPECT_FALSE(copy_.joined) << "the order is another one";
+}
+
+TEST_F(Copying, ByRulesIsAStepOfItsOwnAfterASlide) {
+    slide_threshold(edited(), 0.1);
+    slide_threshold(edited(), 0.2);
+    correct(edited(), {});
+    ASSERT_EQ(copy_.earlier.size(), 2u);
+    EXPECT_TRUE(step_back(edited()));
+    EXPECT_EQ(request_.correction.threshold, 0.2);
+    slide_threshold(edited(), 0.3);
+    EXPECT_EQ(copy_.earlier.size(), 2u) << "the slide before is over";
+    correct(edited(), request_.correction);
+    EXPECT_EQ(copy_.earlier.size(), 2u) << "the same again is no step";
+}
+
+TEST_F(Copying, ASplitAtTheEndOfAStrokeIsNoStep) {
+    const auto& first = copy_.shown->order.front();
+    const writer::Piece& piece = copy_.shown->skeleton.pieces[first.front().piece];
+    click(CopyEdit::split, first.front().reversed ? piece.line.back() : piece.line.front());
+    EXPECT_EQ(request_.correction, writer::CopyCorrection{});
+    EXPECT_TRUE(copy_.earlier.empty());
+    EXPECT_TRUE(edited().ready());
 }
 
 TEST_F(Copying, AClickFarFromAllStrokesDoesNothing) {
@@ -114,9 +192,9 @@ TEST_F(Copying, IsKeptInAProjectWithItsPicture) {
     request_.text = "\xe5\x8d\x81";
     click(CopyEdit::reverse, horizontal_);
     click(CopyEdit::split, vertical_);
-    const std::optional<KeptCopy> kept = copy_to_keep(request_);
-    ASSERT_TRUE(kept);
-    const KeptCopy back = kept_copy(to_attachment(*kept));
+    const KeptCopy kept = copy_to_keep(request_);
+    const KeptCopy back = kept_copy(to_attachment(kept));
+    EXPECT_TRUE(back.says_the_same(kept));
     EXPECT_EQ(back.correction.cuts.size(), 1u);
     EXPECT_EQ(writer::cuts_text(back.correction.cuts), writer::cuts_text(request_.correction.cuts));
     EXPECT_EQ(back.correction.order, request_.correction.order);
@@ -124,8 +202,72 @@ TEST_F(Copying, IsKeptInAProjectWithItsPicture) {
     EXPECT_EQ(back.bytes, read_file(request_.like));
     EXPECT_EQ(picture_of(back), std::filesystem::absolute(request_.like));
     // Of a damaged line the picture is left.
-    EXPECT_EQ(kept_copy({kept->id, "{\"cuts\": \"9:9\"}", kept->bytes}).correction, writer::CopyCorrection{});
-    EXPECT_EQ(kept_copy({kept->id, "no JSON", kept->bytes}).bytes, kept->bytes);
+    EXPECT_EQ(kept_copy({kept.id, "{\"cuts\": \"9:9\"}", kept.bytes}).correction, writer::CopyCorrection{});
+    EXPECT_EQ(kept_copy({kept.id, "no JSON", kept.bytes}).bytes, kept.bytes);
+}
+
+TEST_F(Copying, APictureThatIsAwayIsPutIntoTheStateFolderUnderItsName) {
+    setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 1);
+    KeptCopy kept = copy_to_keep(request_);
+    std::filesystem::remove(request_.like);
+    const std::filesystem::path there = picture_of(kept);
+    EXPECT_EQ(there.filename(), "cross.png");
+    EXPECT_EQ(read_file(there), kept.bytes);
+    // Two pictures of one name.
+    KeptCopy other = kept;
+    other.bytes.push_back(0);
+    EXPECT_NE(picture_of(other), there);
+    EXPECT_EQ(read_file(there), kept.bytes);
+    for (const char* hostile : {"", ".", "..", "a/..", "/"}) {
+        kept.file = hostile;
+        const std::filesystem::path inside = std::filesystem::relative(picture_of(kept), folder_ / "state");
+        EXPECT_NE(*inside.begin(), "..") << hostile;
+        EXPECT_EQ(inside.filename(), "picture.png") << hostile;
+    }
+}
+
+/// What was read to be kept.
+std::vector<CopyKeeper::Read> all_of(CopyKeeper& keeper) {
+    std::vector<CopyKeeper::Read> all;
+    while (keeper.busy()) {
+        keeper.wait();
+        if (auto read = keeper.poll()) all.push_back(std::move(*read));
+    }
+    return all;
+}
+
+TEST_F(Copying, IsReadToBeKeptOnceForEachCorrectionAndStateOfItsFile) {
+    CopyKeeper keeper;
+    std::vector<KeptCopy> kept;
+    const auto keep = [&] {
+        keeper.keep(request_, kept);
+        std::vector<CopyKeeper::Read> all = all_of(keeper);
+        for (CopyKeeper::Read& read : all) kept = {std::move(*read.copy)};
+        return all.size();
+    };
+    EXPECT_EQ(keep(), 1u);
+    EXPECT_EQ(keep(), 0u);
+    click(CopyEdit::reverse, horizontal_);
+    EXPECT_EQ(keep(), 1u);
+    EXPECT_EQ(kept.front().correction, request_.correction);
+    std::filesystem::last_write_time(request_.like, *kept.front().read_at + std::chrono::seconds(1));
+    EXPECT_EQ(keep(), 1u);
+    EXPECT_EQ(keep(), 0u);
+}
+
+TEST_F(Copying, RequestsThatComeWhileOneIsReadAreReadAfterItAndAFaultIsTold) {
+    CopyKeeper keeper;
+    for (const char* name : {"a", "b", "c"}) {
+        request_.text = name;
+        keeper.keep(request_, {});
+    }
+    request_.like = folder_ / "away.png";
+    keeper.keep(request_, {});
+    const std::vector<CopyKeeper::Read> all = all_of(keeper);
+    ASSERT_EQ(all.size(), 4u);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(all[i].copy->name, std::string(1, static_cast<char>('a' + i)));
+    EXPECT_FALSE(all[3].copy);
+    EXPECT_NE(all[3].fault.text().find("away.png"), std::string::npos) << all[3].fault.text();
 }
 
 // JSON as hanzi-writer-data has it; coordinates have two digits.

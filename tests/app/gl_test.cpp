@@ -1,6 +1,7 @@
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
+#include "app/document/pictures/small_picture.h"
 #include "app/view/display.h"
 #include "app/view/texture.h"
 #include "app/view/viewport.h"
@@ -204,6 +205,36 @@ TEST_F(Painted, ASolidWithItsCornersBesideThePictureCoversIt) {
     int red = 0;
     for (std::size_t i = 0; i < pixels.size(); i += channels) red += pixels[i] > 2 * pixels[i + 1];
     EXPECT_EQ(red, kWidth * kHeight);
+}
+
+// A driver gives the same name again once it is free.
+TEST_F(Gl, ASmallPictureTakesThePlaceOfTheTextureBeforeIt) {
+    const auto of_width = [](int width) {
+        return SmallPicture{.width = width, .height = 1, .rgb = std::vector<std::uint8_t>(3 * std::size_t(width), 7)};
+    };
+    const auto width_of = [](unsigned texture) {
+        int width = 0;
+        glBindTexture(GL_TEXTURE_2D, texture);
+        glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &width);
+        return width;
+    };
+    unsigned other = 0, texture = 0;
+    upload(other, of_width(3));
+    upload(texture, of_width(5));
+    const unsigned first = texture;
+    upload(texture, of_width(7));
+    EXPECT_EQ(width_of(texture), 7);
+    EXPECT_EQ(width_of(other), 3);
+    EXPECT_TRUE(first == texture || !glIsTexture(first));
+    int alignment = 0;
+    glGetIntegerv(GL_UNPACK_ALIGNMENT, &alignment);
+    EXPECT_EQ(alignment, 4) << "as OpenGL has it";
+    const unsigned last = texture;
+    release(texture);
+    release(other);
+    EXPECT_EQ(texture, 0u);
+    EXPECT_FALSE(glIsTexture(last));
+    release(texture);
 }
 
 }  // namespace

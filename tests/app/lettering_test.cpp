@@ -1,9 +1,11 @@
 #include "app/document/lettering.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <thread>
 
 #include "both_programs.h"
@@ -57,6 +59,38 @@ TEST(Lettering, AnotherTextIsReadWhileTheLastOneIsStillBeingRead) {
     while (reader.busy(l)) reader.update(l);
     ASSERT_FALSE(l.empty());
     EXPECT_EQ(l.text->lines.front().size(), 2u);
+}
+
+// Another picture under the same name is another picture.
+TEST(Lettering, APictureChosenAgainIsReadAgainAsItsFileIsNow) {
+    const std::string file = testing::TempDir() + "/tuft_lettering_" + std::to_string(getpid()) + ".png";
+    write_cross(file);
+    Lettering l;
+    LetteringReader reader;
+    const auto choose = [&] {
+        copy_picture(l, file);
+        l.copy.fresh = false;
+        EXPECT_TRUE(reader.busy(l));
+        while (reader.busy(l)) reader.update(l);
+    };
+    choose();
+    ASSERT_TRUE(l.copy.shown);
+    EXPECT_TRUE(l.copy.fresh);
+    choose();
+    ASSERT_TRUE(l.copy.shown) << "the panel is not left blank";
+    EXPECT_FALSE(l.copy.fresh) << "its texture is the same";
+    const std::vector<std::uint8_t> before = l.copy.picture.rgb;
+    std::vector<std::uint8_t> bar(200 * 200, 255);
+    for (std::size_t i = 0; i < bar.size(); ++i)
+        if (i / 200 >= 90 && i / 200 < 110 && i % 200 >= 20 && i % 200 < 180) bar[i] = 0;
+    io::write_image(file, io::view_of(200, 200, 1, bar.data()));
+    std::filesystem::last_write_time(file, std::filesystem::last_write_time(file) + std::chrono::seconds(2));
+    choose();
+    ASSERT_TRUE(l.copy.shown);
+    EXPECT_EQ(l.copy.shown->order.size(), 1u);
+    EXPECT_TRUE(l.copy.fresh);
+    EXPECT_NE(l.copy.picture.rgb, before);
+    std::filesystem::remove(file);
 }
 
 TEST(Lettering, ItsUsualSizeIsATenthOfTheModelInTwoDigits) {

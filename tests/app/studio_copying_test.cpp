@@ -20,11 +20,8 @@ class StudioCopying : public StudioProgram {
         return kBowl + "set tool text\nset text-like " + path("cross.png") +
                "\nset text \xe5\x8d\x81\nset text-size 20\nwait-ready\nwait 0.2\nexpect label \"Stroke 2\"\n";
     }
-    /// A click on the bowl's wall between the panels, after which the journal has `n` strokes.
-    static std::string click_for(int n) {
-        return "wait-ready\nmove 45%,62%\nwait 0.1\npress\nrelease\nwait-ready\nexpect strokes " + std::to_string(n) +
-               "\n";
-    }
+    /// Between the panels.
+    static std::string write_for(int n) { return click_for(n, "45%,62%"); }
     /// Whether a stroke runs to the right.
     static bool goes_right(const stroke::JournalEntry& entry) {
         const auto& samples = std::get<stroke::PaintStroke>(entry.content).trace.samples;
@@ -33,7 +30,7 @@ class StudioCopying : public StudioProgram {
 };
 
 TEST_F(StudioCopying, ACorrectedOrderIsPaintedInOneGroupAndKeptWithTheProject) {
-    const Ran first = studio(copied() + click_for(2) + "click \"Stroke 1\"\nwait 0.2\n" + click_for(4) +
+    const Ran first = studio(copied() + write_for(2) + "click \"Stroke 1\"\nwait 0.2\n" + write_for(4) +
                                  "expect message --order\nsave work.tuft\nwait-ready\n",
                              kWindow);
     ASSERT_EQ(first.status, 0) << first.err;
@@ -48,7 +45,7 @@ TEST_F(StudioCopying, ACorrectedOrderIsPaintedInOneGroupAndKeptWithTheProject) {
     const Ran second =
         studio("open " + path("work.tuft") + "\nwait-ready\nset tool text\nclick \"\xe2\x96\xbe##kept\"\n" +
                    "click \"kept \xe5\x8d\x81  cross.png\"\nwait-ready\nset text-size 20\n" +
-                   "expect label \"Stroke 2\"\n" + click_for(6) + "save work.tuft\nwait-ready\n",
+                   "expect label \"Stroke 2\"\n" + write_for(6) + "save work.tuft\nwait-ready\n",
                kWindow);
     ASSERT_EQ(second.status, 0) << second.err;
     EXPECT_FALSE(goes_right(io::Project::open(path("work.tuft")).strokes()[4]));
@@ -72,7 +69,7 @@ TEST_F(StudioCopying, StrokesAreDraggedSplitJoinedRemovedAndTakenBackByHand) {
         return places(ran.out);
     };
     // 十: the middles of its strokes differ little, so where the first one is tells the order by what is painted.
-    const Ran dragged = studio(copied() + drag + click_for(2) + "save work.tuft\nwait-ready\n", kWindow);
+    const Ran dragged = studio(copied() + drag + write_for(2) + "save work.tuft\nwait-ready\n", kWindow);
     ASSERT_EQ(dragged.status, 0) << dragged.err;
     const auto strokes = io::Project::open(path("work.tuft")).strokes();
     ASSERT_EQ(strokes.size(), 2u);
@@ -101,13 +98,48 @@ TEST_F(StudioCopying, IsSavedAsAFileThatTheToolAndTheCommandRead) {
     EXPECT_EQ(written.at("strokes").size(), 2u);
 }
 
+// The number in the hand is of strokes that are not there any more.
+TEST_F(StudioCopying, StrokesReadAnewUnderADragOfTheirNumbersAreNotMoved) {
+    const Ran found = studio(copied() + "places\n", kWindow);
+    ASSERT_EQ(found.status, 0) << found.err;
+    const auto at = [&](const std::string& label) {
+        const auto [x, y] = places(found.out).at(label);
+        return std::to_string(x) + "," + std::to_string(y);
+    };
+    const std::string one_stroke = "set copy-order 2+3\nwait-ready\nwait 0.2\n";
+    const Ran ran = studio(copied() + "move " + at("Order 2") + "\npress\nwait 0.1\n" + one_stroke + "move " +
+                               at("Order 1") + "\nwait 0.2\nrelease\nwait 0.2\nplaces\nclick \"Step back\"\n" +
+                               "wait-ready\nexpect label \"Stroke 2\"\n",
+                           kWindow);
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_FALSE(places(ran.out).contains("Stroke 2"));
+}
+
+TEST_F(StudioCopying, TheSamePictureChosenAgainIsShownAndCopiedAsItsFileIsNow) {
+    const Ran ran = studio(kBowl + "set tool text\nset text-like " + path("cross.png") +
+                               "\nwait-ready\nwait 0.2\nexpect label \"Stroke 2\"\nset text-like " + path("cross.png") +
+                               "\nwait-ready\nwait 0.2\nexpect label \"Stroke 2\"\n",
+                           kWindow);
+    EXPECT_EQ(ran.status, 0) << ran.err;
+}
+
+// What follows the end of a PNG is no part of the picture.
+TEST_F(StudioCopying, APictureTooLargeForTheProjectIsWrittenAndItIsSaidThatItIsNotKept) {
+    fs::resize_file(path("cross.png"), (24u << 20) + 1);
+    const Ran ran = studio(copied() + write_for(2) + "wait-ready\nexpect message \"not kept\"\nsave work.tuft\n" +
+                               "wait-ready\nexpect strokes 2\n",
+                           kWindow);
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_TRUE(io::Project::open(path("work.tuft")).attachments(io::kCopies).empty());
+}
+
 TEST_F(StudioCopying, APictureWithoutInkIsAFaultAndATextCanBeWrittenAgain) {
     std::vector<std::uint8_t> white(64 * 64, 255);
     io::write_image(path("white.png"), io::view_of(64, 64, 1, white.data()));
     const Ran ran = studio(kBowl + "set tool text\nset text-like " + path("white.png") +
                                "\nwait-ready\nexpect label \"Text fault\"\nclick \"\xc3\x97##like\"\nset text "
                                "\xe6\xb0\xb8\nset text-size 20\n" +
-                               click_for(5),
+                               write_for(5),
                            kWindow);
     EXPECT_EQ(ran.status, 0) << ran.err;
 }

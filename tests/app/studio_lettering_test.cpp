@@ -15,10 +15,6 @@ class StudioLettering : public StudioProgram {
     std::string written(const std::string& text) const {
         return kBowl + "set tool text\nset text " + text + "\nset text-size 20\nwait-ready\nmove 52%,62%\nwait 0.1\n";
     }
-    /// A click in the middle of the bowl's wall, after which the journal has `n` strokes.
-    static std::string click_for(int n) {
-        return "move 52%,62%\nwait 0.1\npress\nrelease\nwait-ready\nexpect strokes " + std::to_string(n) + "\n";
-    }
     std::vector<stroke::JournalEntry> project(const std::string& name) const {
         return io::Project::open(path(name)).strokes();
     }

@@ -14,6 +14,20 @@ namespace {
 
 class Panels : public StudioProgram {};
 
+// Esc drops a curve first: the panel is still there to go on with it.
+TEST_F(Panels, EscPutsPanelsOverTheViewAwayOneByOneWhenThereIsNothingElseToLeave) {
+    const Ran ran =
+        studio(kBowl +
+                   "set palette on\nclick \"All brushes\"\nwait 0.2\nset tool curve\nmove 60%,62%\npress\n"
+                   "release\nmove 66%,62%\npress\nrelease\nwait 0.1\nkey escape\nwait 0.2\nexpect label "
+                   "\"Brush filter\"\nexpect label Plate\nkey escape\nwait 0.2\nexpect label Plate\nplaces\n"
+                   "key escape\nwait 0.2\nexpect strokes 0\nnames\n",
+               "--headless --size 1600x900");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_FALSE(places(ran.out).contains("Brush filter"));
+    EXPECT_EQ(ran.out.find("\nPlate\n"), std::string::npos);
+}
+
 struct Setting {
     const char* language;
     double scale;

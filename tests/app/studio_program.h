@@ -57,6 +57,11 @@ class StudioProgram : public testing::Test {
         const int raw = std::system(("bash -c \"" + command(script, options) + "\"").c_str());
         return {WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw), read(path(".out")), read(path(".err"))};
     }
+    /// A click on the model, by default in the middle of the bowl's wall, after which the journal has `n` strokes.
+    static std::string click_for(int n, const std::string& at = "52%,62%") {
+        return "wait-ready\nmove " + at + "\nwait 0.1\npress\nrelease\nwait-ready\nexpect strokes " +
+               std::to_string(n) + "\n";
+    }
     nlohmann::json tuft(const std::string& arguments) const { return test::tuft(arguments, path("tuft.json")); }
 
     // Where `places` says that each label lies.

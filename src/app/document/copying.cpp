@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -24,6 +25,7 @@ constexpr std::size_t kMostSteps = 200;
 /// Remembers the present correction, to go back to it.
 void begin_step(const CopyToEdit& c) {
     std::vector<writer::CopyCorrection>& earlier = c.copy.earlier;
+    c.copy.slides = false;
     if (earlier.size() == kMostSteps) earlier.erase(earlier.begin());
     earlier.push_back(c.request.correction);
 }
@@ -32,15 +34,32 @@ std::string id_of(const std::vector<char>& bytes) {
     return fmt::format("{:016x}", hash_bytes(bytes.data(), bytes.size()));
 }
 
+std::optional<fs::file_time_type> time_of(const fs::path& file) {
+    std::error_code ec;
+    const fs::file_time_type time = fs::last_write_time(file, ec);
+    return ec ? std::nullopt : std::optional(time);
+}
+
+/// The name of a picture's file in a folder; of a hostile path that is none, one of our own.
+std::string file_name_of(const KeptCopy& copy) {
+    const std::string name = copy.file.filename().string();
+    return name.empty() || name == "." || name == ".." ? "picture.png" : name;
+}
+
 void take_order(const CopyToEdit& c) {
     c.request.correction.order = writer::order_text(c.copy.shown->order);
     c.copy.shown_for = c.request.correction;
+    c.copy.joined.reset();
 }
 
 void split(const CopyToEdit& c, const writer::StrokePlace& place) {
     writer::CopiedPicture& shown = *c.copy.shown;
-    writer::CopyCorrection next = writer::split_at(shown, c.request.correction, place);
-    if (next.cuts.size() > c.request.correction.cuts.size()) writer::cut_piece(shown.skeleton, next.cuts.back());
+    const writer::CopyCorrection& before = c.request.correction;
+    writer::CopyCorrection next = writer::split_at(shown, before, place);
+    const bool cuts = next.cuts.size() > before.cuts.size();
+    if (!cuts && next.order == writer::order_text(shown.order)) return;  // at an end of the stroke
+    begin_step(c);
+    if (cuts) writer::cut_piece(shown.skeleton, next.cuts.back());
     shown.order = writer::parse_order(next.order, shown.skeleton.pieces.size());
     c.request.correction = std::move(next);
     c.copy.shown_for = c.request.correction;
@@ -52,12 +71,12 @@ void join(const CopyToEdit& c, std::size_t stroke) {
         copy.joined = stroke;
         return;
     }
-    if (*copy.joined != stroke) {
-        begin_step(c);
-        writer::join_strokes(copy.shown->order, *copy.joined, stroke);
-        take_order(c);
-    }
+    const std::size_t first = *copy.joined;
     copy.joined.reset();
+    if (first == stroke) return;
+    begin_step(c);
+    writer::join_strokes(copy.shown->order, first, stroke);
+    take_order(c);
 }
 
 }  // namespace
@@ -69,8 +88,8 @@ void edit_stroke(const CopyToEdit& c, const Vec2& at) {
     if (place.distance > kStrokeReach) return copy.joined.reset();
     if (copy.edit == CopyEdit::join) return join(c, place.stroke);
     if (copy.edit == CopyEdit::remove && copy.shown->order.size() == 1) return;
-    begin_step(c);
     if (copy.edit == CopyEdit::split) return split(c, place);
+    begin_step(c);
     if (copy.edit == CopyEdit::reverse)
         writer::reverse_stroke(copy.shown->order, place.stroke);
     else
@@ -78,28 +97,44 @@ void edit_stroke(const CopyToEdit& c, const Vec2& at) {
     take_order(c);
 }
 
-void move_stroke(const CopyToEdit& c, std::size_t stroke, std::size_t to, bool begins) {
-    if (!c.ready()) return;
-    if (begins) begin_step(c);
-    writer::move_stroke(c.copy.shown->order, stroke, to);
+void drag_stroke(const CopyToEdit& c, std::size_t to) {
+    std::optional<StrokeDrag>& drag = c.copy.dragged;
+    if (!drag) return;
+    if (!c.ready() || drag->stroke >= c.copy.shown->order.size()) return drag.reset();
+    if (to == drag->stroke || to >= c.copy.shown->order.size()) return;
+    if (!drag->moved) begin_step(c);
+    writer::move_stroke(c.copy.shown->order, drag->stroke, to);
+    drag = {to, true};
     take_order(c);
 }
 
+void CopyInWork::take(std::optional<writer::CopiedPicture> read, const writer::CopyCorrection& correction) {
+    if (!shown || !read || shown->order != read->order) joined.reset(), dragged.reset();
+    shown = std::move(read);
+    shown_for = correction;
+}
+
 void correct(const CopyToEdit& c, writer::CopyCorrection correction) {
-    // A slide of the threshold is one step.
-    const auto only_threshold = [](const writer::CopyCorrection& a) { return a.cuts.empty() && a.order.empty(); };
-    const bool slides = !c.copy.earlier.empty() && only_threshold(c.copy.earlier.back()) &&
-                        only_threshold(c.request.correction) && only_threshold(correction);
-    if (!slides) begin_step(c);
+    if (correction == c.request.correction) return;
+    begin_step(c);
     c.request.correction = std::move(correction);
-    c.copy.joined.reset();
+    c.copy.let_go();
+}
+
+void slide_threshold(const CopyToEdit& c, double threshold) {
+    writer::CopyCorrection next{.threshold = std::round(1000 * threshold) / 1000, .cuts = {}, .order = {}};
+    if (next == c.request.correction) return;
+    if (!c.copy.slides) begin_step(c);
+    c.request.correction = std::move(next);
+    c.copy.let_go();
+    c.copy.slides = true;
 }
 
 bool step_back(const CopyToEdit& c) {
     if (c.copy.earlier.empty()) return false;
     c.request.correction = std::move(c.copy.earlier.back());
     c.copy.earlier.pop_back();
-    c.copy.joined.reset();
+    c.copy.let_go();
     return true;
 }
 
@@ -129,30 +164,65 @@ KeptCopy kept_copy(const io::Attachment& attachment) {
     return copy;
 }
 
-std::optional<KeptCopy> copy_to_keep(const writer::TextRequest& request) {
-    try {
-        KeptCopy copy{.id = {},
-                      .file = fs::absolute(request.like),
-                      .bytes = read_file(request.like, kMostPictureBytes),
-                      .name = request.text,
-                      .correction = request.correction};
-        copy.id = id_of(copy.bytes);
-        return copy;
-    } catch (const Error&) {
-        return std::nullopt;
-    }
+KeptCopy copy_to_keep(const writer::TextRequest& request) {
+    KeptCopy copy{.id = {},
+                  .file = fs::absolute(request.like),
+                  .bytes = {},
+                  .name = request.text,
+                  .correction = request.correction,
+                  .read_at = time_of(request.like)};
+    copy.bytes = read_file(request.like, kMostPictureBytes);
+    copy.id = id_of(copy.bytes);
+    return copy;
+}
+
+void CopyKeeper::keep(const writer::TextRequest& request, std::span<const KeptCopy> kept) {
+    const fs::path file = fs::absolute(request.like);
+    const auto time = time_of(file);
+    const bool there =
+        time && std::any_of(kept.begin(), kept.end(), [&](const KeptCopy& k) {
+            return k.file == file && k.read_at == time && k.name == request.text && k.correction == request.correction;
+        });
+    if (there || (!wanted_.empty() && wanted_.back() == request)) return;
+    wanted_.push_back(request);
+    if (!busy()) begin();
+}
+
+void CopyKeeper::begin() {
+    reading_ = std::async(std::launch::async, [request = std::move(wanted_.front())] {
+        Read read;
+        try {
+            read.copy = copy_to_keep(request);
+            read.attachment = to_attachment(*read.copy);
+        } catch (const std::exception& error) {
+            read.copy.reset();
+            read.fault = message_of(error);
+        }
+        return read;
+    });
+    wanted_.pop_front();
+}
+
+std::optional<CopyKeeper::Read> CopyKeeper::poll() {
+    if (!busy() || reading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return std::nullopt;
+    Read read = reading_.get();
+    if (!wanted_.empty()) begin();
+    return read;
+}
+
+void CopyKeeper::wait() const {
+    if (busy()) reading_.wait();
 }
 
 fs::path picture_of(const KeptCopy& copy) {
     try {
         if (!copy.file.empty() && read_file(copy.file, kMostPictureBytes) == copy.bytes) return copy.file;
     } catch (const Error&) {
-        // It is no longer there.
+        // It is away.
     }
-    const fs::path folder = state_folder() / "copied";
+    const fs::path folder = state_folder() / "copied" / id_of(copy.bytes);
     fs::create_directories(folder);
-    const std::string type = copy.file.extension().string();
-    const fs::path file = folder / (id_of(copy.bytes) + (type.empty() ? ".png" : type));
+    const fs::path file = folder / file_name_of(copy);
     write_file(file, copy.bytes.data(), copy.bytes.size());
     return file;
 }

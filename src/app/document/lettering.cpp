@@ -110,7 +110,8 @@ void copy_picture(Lettering& l, const std::filesystem::path& picture) {
     l.wanted.correction = {};
     l.copy.shown.reset();
     l.copy.earlier.clear();
-    l.copy.joined.reset(), l.copy.dragged.reset();
+    l.copy.let_go();
+    l.reread = true;
     set_text(l, "");  // the text of before is no name of one character
 }
 
@@ -130,8 +131,11 @@ LetteringReader::Read LetteringReader::read(const writer::TextRequest& request) 
         writer::Text text = reader_.read(request);
         if (!text.blank()) out.text = std::move(text);
         out.copy = reader_.copied();
-        if (out.copy && request.like != shown_) out.picture = small_picture(reader_.picture(), kMostAcross);
-        shown_ = out.copy ? request.like : "";
+        std::error_code ec;
+        const auto time = std::filesystem::last_write_time(request.like, ec);
+        if (out.copy && (request.like != shown_ || time != shown_time_))
+            out.picture = small_picture(reader_.picture(), kMostAcross);
+        shown_ = out.copy ? request.like : "", shown_time_ = time;
     } catch (const std::exception& error) {
         out.fault = message_of(error);
     }
@@ -146,12 +150,12 @@ void LetteringReader::update(Lettering& l) {
         l.fault = std::move(read.fault);
         ++l.revision;
         // What was edited meanwhile is newer.
-        if (l.wanted == asked_) l.copy.shown = std::move(read.copy), l.copy.shown_for = asked_.correction;
+        if (l.wanted == asked_ && !l.reread) l.copy.take(std::move(read.copy), asked_.correction);
         if (!read.picture.rgb.empty()) l.copy.picture = std::move(read.picture), l.copy.fresh = true;
     }
     lay_out(l);
-    if (l.wanted == asked_) return;
-    asked_ = l.wanted;
+    if (l.wanted == asked_ && !l.reread) return;
+    asked_ = l.wanted, l.reread = false;
     reading_ = std::async(std::launch::async, [this, request = asked_] { return read(request); });
 }
 

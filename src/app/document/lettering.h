@@ -27,6 +27,7 @@ struct Lettering {
     bool style_brush = true;               ///< the style's brush in the size that suits; false: the chosen brush
     bool fit = false;                      ///< to the outlines of the source
     CopyInWork copy;                       ///< of the picture `wanted.like`
+    bool reread = false;                   ///< the picture is to be read, also where nothing else is wanted
     std::vector<KeptCopy> kept;            ///< of the project
     std::vector<CurvePoint> curve;         ///< of the curve tool when it was left last; the text runs along it
 
@@ -38,8 +39,11 @@ struct Lettering {
     bool fitted() const { return fit || !wanted.like.empty(); }  ///< to outlines; copies always are
 };
 
-/// Copies a character from a picture from now on; an empty path: writes the text again.
+/// Copies a character from a picture from now on, as its file is now; an empty path: writes the text again.
 void copy_picture(Lettering& lettering, const std::filesystem::path& picture);
+inline CopyToEdit copy_to_edit(Lettering& lettering) {
+    return {lettering.copy, lettering.wanted};
+}
 
 /// Sets the text elsewhere than in its field.
 inline void set_text(Lettering& lettering, const std::string& text) {
@@ -59,20 +63,23 @@ class LetteringReader {
     /// Takes what was read, lays it out, and begins to read when `wanted` has changed. Returns at once.
     void update(Lettering& lettering);
     /// Returns true while the text of `lettering` is not what its `wanted` says.
-    bool busy(const Lettering& lettering) const { return reading_.valid() || !(lettering.wanted == asked_); }
+    bool busy(const Lettering& lettering) const {
+        return reading_.valid() || lettering.reread || !(lettering.wanted == asked_);
+    }
 
   private:
     struct Read {
         std::optional<writer::Text> text;
         Message fault;
         std::optional<writer::CopiedPicture> copy;
-        SmallPicture picture;  ///< of another file than the one before; else empty
+        SmallPicture picture;  ///< where it is another one than before; else empty
     };
     Read read(const writer::TextRequest& request);
 
     writer::TextRequest asked_;    // of the last reading
     writer::TextReader reader_;    // used by one thread at a time
     std::filesystem::path shown_;  // picture that was given last; likewise
+    std::filesystem::file_time_type shown_time_;
     std::future<Read> reading_;
 };
 

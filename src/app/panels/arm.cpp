@@ -240,7 +240,7 @@ void force_section(Session& s) {
     Ui& ui = s.ui;
     ArmSettings& a = s.arm.settings;
     if (!ui.section("Force", true)) return;
-    const double own = shipped_brush(brush::sized_name(s.brush.preset).base).force_gain;
+    const double own = s.brush.shelf.at(brush::sized_name(s.brush.preset).base).preset.force_gain;
     double gain = a.gain > 0 ? a.gain : own;
     bool changed = false;
     if (ui.slider("Gain", gain, {1, kMostArmGain, "%.0f\xc3\x97"}, "Force on the hand over the force of the hair"))
@@ -287,17 +287,7 @@ void space_section(Session& s) {
 void arm_panel(Session& s) {
     if (!s.arm.shown || !s.paint_thread) return;
     Ui& ui = s.ui;
-    const float pad = ui.px(10), width = std::min(ui.px(kArmWidth), static_cast<float>(s.view.area.width) - 2 * pad);
-    ImGui::SetNextWindowPos(
-        ImVec2(static_cast<float>(s.view.area.x + s.view.area.width) - pad, static_cast<float>(s.view.area.y) + pad),
-        ImGuiCond_Always, ImVec2(1, 0));
-    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0),
-                                        ImVec2(width, static_cast<float>(s.view.area.height) - 2 * pad));
-    ImGui::SetNextWindowBgAlpha(0.95f);
-    ImGui::Begin("###arm", nullptr,
-                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
-                     ImGuiWindowFlags_AlwaysAutoResize);
+    begin_panel_over(ui, s.view.area, {.name = "arm", .across = 1, .width = kArmWidth});
     ui.heading("Force-feedback arm");
     state_line(s);
     if (!s.arm.arm) choose_device(s);

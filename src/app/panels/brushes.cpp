@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "app/panels/panels.h"
-#include "app/session/brush_families.h"
 #include "app/widgets/file_list.h"
 #include "brush/tuft/tuft.h"
 #include "pictures/tried_stroke.h"
@@ -140,32 +139,55 @@ std::string sort_of(const std::string& name) {
 }
 
 /// A tried stroke, or the empty sheet until it is painted.
-void draw_tried(const Ui& ui, TriedStrokes& tried, const std::string& name, ImVec2 at, float width) {
+void draw_tried(const Ui& ui, BrushSettings& brush, const std::string& name, ImVec2 at, float width) {
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const ImVec2 end(at.x + width, at.y + width / kAspect);
-    if (const unsigned texture = tried.texture(name))
+    if (const unsigned texture = brush.tried.texture(name, brush.shelf.at(name).reading))
         draw->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)), at, end, ImVec2(0, 0),
                               ImVec2(1, 1), IM_COL32_WHITE, ui.px(3));
     else
         draw->AddRectFilled(at, end, IM_COL32(241, 238, 230, 60), ui.px(3));
 }
 
-/// Name, size and tried stroke of the brush under the cursor.
-void brush_tooltip(const Ui& ui, TriedStrokes& tried, const std::string& name) {
+/// Name, size and tried stroke of the brush under the cursor; or why it cannot be taken.
+void brush_tooltip(const Ui& ui, BrushSettings& brush, const std::string& name) {
+    const ShelfBrush& there = brush.shelf.at(name);
+    const float width = ui.px(224);
     ImGui::BeginTooltip();
     ImGui::TextUnformatted(ui.title(name).c_str());
+    if (!there.fault.empty()) {
+        ImGui::PushStyleColor(ImGuiCol_Text, ui.wrong);
+        ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width);
+        ImGui::TextUnformatted(ui.sentence(there.fault).c_str());
+        ImGui::PopTextWrapPos();
+        ImGui::PopStyleColor();
+        ImGui::EndTooltip();
+        return;
+    }
     ImGui::PushStyleColor(ImGuiCol_Text, ui.faint);
-    ImGui::TextUnformatted(size_text(ui, shipped_brush(name)).c_str());
+    ImGui::TextUnformatted(size_text(ui, there.preset).c_str());
     ImGui::PopStyleColor();
-    const float width = ui.px(224);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::Dummy(ImVec2(width, width / kAspect));
-    draw_tried(ui, tried, name, at, width);
+    draw_tried(ui, brush, name, at, width);
     ImGui::EndTooltip();
 }
 
-void choose(BrushSettings& brush, const std::string& name) {
-    brush.preset = name;
+void choose(Session& s, const std::string& name) {
+    try {
+        take_brush(s.brush, name);
+    } catch (const Error& error) {
+        show_message(s.status, error.message());
+    }
+}
+
+/// The tuft as it hangs there: pale where it cannot be taken.
+void draw_hanging(Session& s, const std::string& name, ImVec2 at, float width, float height) {
+    const ShelfBrush& there = s.brush.shelf.at(name);
+    draw_tuft_icon(s.ui, there.preset, hair_colour(sort_of(name)), at, width, height);
+    if (!there.fault.empty())
+        ImGui::GetWindowDrawList()->AddRectFilled(at, ImVec2(at.x + width, at.y + height),
+                                                  ImGui::GetColorU32(ImGuiCol_WindowBg, 0.75f));
 }
 
 /// Marks what is chosen or under the cursor. Returns whether the cursor is on it.
@@ -185,11 +207,11 @@ bool is_chosen(const BrushSettings& brush, const std::string& name) {
 void brush_cell(Session& s, const std::string& name, ImVec2 size) {
     Ui& ui = s.ui;
     const ImVec2 at = ImGui::GetCursorScreenPos(), end(at.x + size.x, at.y + size.y);
-    if (ImGui::InvisibleButton(name.c_str(), size)) choose(s.brush, name);
+    if (ImGui::InvisibleButton(name.c_str(), size)) choose(s, name);
     ui.mark(name);
     const bool over = draw_choice(ui, at, end, is_chosen(s.brush, name));
-    draw_tuft_icon(ui, shipped_brush(name), hair_colour(sort_of(name)), at, size.x, size.y);
-    if (over) brush_tooltip(ui, s.brush.tried, name);
+    draw_hanging(s, name, at, size.x, size.y);
+    if (over) brush_tooltip(ui, s.brush, name);
 }
 
 /// All brushes in rows, a group for each family, its name under it. Where there is little room, they stand group by
@@ -236,8 +258,8 @@ void tried_row(Session& s, float height) {
     const float width = height * kAspect, all = ImGui::GetContentRegionAvail().x, gap = ImGui::GetStyle().ItemSpacing.x;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     if (ImGui::InvisibleButton("##tried", ImVec2(width, height))) s.panels.show_brushes = !s.panels.show_brushes;
-    draw_tried(ui, s.brush.tried, name, at, width);
-    if (ImGui::IsItemHovered()) brush_tooltip(ui, s.brush.tried, name);
+    draw_tried(ui, s.brush, name, at, width);
+    if (ImGui::IsItemHovered()) brush_tooltip(ui, s.brush, name);
     ImGui::SameLine();
     const ImVec2 button(all - width - gap, height);
     if (ImGui::Button((std::string(ui.tr("All...")) + "##brushes").c_str(), button))
@@ -246,26 +268,54 @@ void tried_row(Session& s, float height) {
     ui.hint("All brushes with a stroke of each; own ones from a file");
 }
 
+/// A small button in a card's corner. Returns true where the brush is to go.
+bool forget_button(Ui& ui, const std::string& name, ImVec2 corner) {
+    const float side = ui.px(18);
+    const ImVec2 after = ImGui::GetCursorScreenPos();
+    ImGui::SetCursorScreenPos(ImVec2(corner.x - side, corner.y));
+    const bool pressed = ImGui::InvisibleButton(("forget " + name).c_str(), ImVec2(side, side));
+    ui.mark("forget " + name);
+    ui.hint("Takes the brush off the list; its file stays where it is");
+    const ImVec2 c(corner.x - 0.5f * side, corner.y + 0.5f * side);
+    const float r = ui.px(3.5f);
+    const unsigned colour = ImGui::IsItemHovered() ? ui.strong : ui.faint;
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    draw->AddLine(ImVec2(c.x - r, c.y - r), ImVec2(c.x + r, c.y + r), colour, ui.px(1.5f));
+    draw->AddLine(ImVec2(c.x - r, c.y + r), ImVec2(c.x + r, c.y - r), colour, ui.px(1.5f));
+    ImGui::SetCursorScreenPos(after);
+    return pressed;
+}
+
 /// A brush with name, size and tried stroke.
 void brush_card(Session& s, const std::string& name, float width) {
     Ui& ui = s.ui;
-    const brush::Preset& preset = shipped_brush(name);
+    const ShelfBrush& there = s.brush.shelf.at(name);
+    const bool own = is_own_brush(name), away = !there.fault.empty();
     const float height = ui.px(kCardHeight), pad = ui.px(4), icon = ui.px(kCardIcon);
     const ImVec2 at = ImGui::GetCursorScreenPos(), end(at.x + width, at.y + height);
-    if (ImGui::InvisibleButton(("card " + name).c_str(), ImVec2(width, height))) choose(s.brush, name);
+    if (ImGui::InvisibleButton(("card " + name).c_str(), ImVec2(width, height))) choose(s, name);
+    if (own) ImGui::SetItemAllowOverlap();
     ui.mark("card " + name);
     if (draw_choice(ui, at, end, is_chosen(s.brush, name)) && !ui.modal)
-        ImGui::SetTooltip("%s", size_text(ui, preset).c_str());
-    draw_tuft_icon(ui, preset, hair_colour(sort_of(name)), ImVec2(at.x + pad, at.y + pad), icon, height - 2 * pad);
+        ImGui::SetTooltip("%s", away ? ui.sentence(there.fault).c_str() : size_text(ui, there.preset).c_str());
+    draw_hanging(s, name, ImVec2(at.x + pad, at.y + pad), icon, height - 2 * pad);
     const float x = at.x + icon + 2 * pad, letters = 0.8f * ImGui::GetFontSize(), room = width - icon - 3 * pad;
     ImDrawList* draw = ImGui::GetWindowDrawList();
     draw->PushClipRect(at, end, true);
-    draw->AddText(ImVec2(x, at.y + ui.px(1)), ui.strong, ui.fitted(ui.title(name), room).c_str());
+    draw->AddText(ImVec2(x, at.y + ui.px(1)), away ? ui.faint : ui.strong,
+                  ui.fitted(ui.title(name), own ? room - ui.px(16) : room).c_str());
     const float stroke = std::min(room, (height - ImGui::GetTextLineHeight() - letters - ui.px(5)) * kAspect);
-    draw_tried(ui, s.brush.tried, name, ImVec2(x, at.y + ImGui::GetTextLineHeight() + ui.px(2)), stroke);
-    draw->AddText(ImGui::GetFont(), letters, ImVec2(x, end.y - letters - ui.px(3)), ui.faint,
-                  card_size(preset).c_str());
+    if (!away) draw_tried(ui, s.brush, name, ImVec2(x, at.y + ImGui::GetTextLineHeight() + ui.px(2)), stroke);
+    const ImVec2 last(x, end.y - letters - ui.px(3));
+    if (away) {
+        const bool gone = !there.written;
+        draw->AddText(ImGui::GetFont(), letters, last, ui.wrong, ui.tr(gone ? "The file is away" : "Cannot be read"));
+        ui.mark_at((gone ? "away " : "damaged ") + name, last.x, last.y);
+    } else {
+        draw->AddText(ImGui::GetFont(), letters, last, ui.faint, card_size(there.preset).c_str());
+    }
     draw->PopClipRect();
+    if (own && forget_button(ui, name, ImVec2(end.x, at.y))) forget_own_brush(s.brush, std::string(name));
 }
 
 /// Whether a brush is looked for by these letters: in its name, or in its name in the language of the interface.
@@ -306,7 +356,7 @@ Savings brush_rack(Session& s, ToolRoom room) {
     Ui& ui = s.ui;
     const std::string chosen = ui.title(brush::sized_name(s.brush.preset).base);
     if (!ui.section("Brush", true, chosen.c_str())) return {};
-    const float rows = rack_rows(s, brush_families(s.brush.presets), room);
+    const float rows = rack_rows(s, s.brush.shelf.families(s.brush.presets), room);
     tried_row(s, ui.px(kTriedHeights[static_cast<int>(room)]));
     const float letters = 0.8f * ImGui::GetFontSize();
     return {rows * ui.px(kRackHeights[0] - kRackHeights[1]) + ui.px(kTriedHeights[0] - kTriedHeights[1]),
@@ -317,19 +367,17 @@ Savings brush_rack(Session& s, ToolRoom room) {
 void brush_browser(Session& s) {
     if (!s.panels.show_brushes) return;
     Ui& ui = s.ui;
-    const Area& area = s.view.area;
-    const float pad = ui.px(16), width = std::min(ui.px(kBrowserWidth), static_cast<float>(area.width) - 2 * pad),
-                height = static_cast<float>(area.height) - 2 * pad;
-    ImGui::SetNextWindowPos(ImVec2(static_cast<float>(area.x) + pad, static_cast<float>(area.y) + pad),
-                            ImGuiCond_Appearing);
-    ImGui::SetNextWindowSize(ImVec2(width, height));
-    ImGui::SetNextWindowBgAlpha(0.97f);
-    if (ImGui::Begin((std::string(ui.tr("Brushes")) + "###brushes").c_str(), &s.panels.show_brushes,
-                     ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoCollapse)) {
+    if (begin_panel_over(ui, s.view.area,
+                         {.name = "Brushes",
+                          .width = kBrowserWidth,
+                          .height = static_cast<float>(s.view.area.height),
+                          .has_bar = true,
+                          .moves = true,
+                          .shown = &s.panels.show_brushes})) {
         browser_top(s);
         const std::string letters = lower(s.panels.brush_filter);
         ImGui::BeginChild("##cards");
-        for (const BrushFamily& family : brush_families(s.brush.presets)) family_cards(s, family, letters);
+        for (const BrushFamily& family : s.brush.shelf.families(s.brush.presets)) family_cards(s, family, letters);
         ImGui::EndChild();
     }
     ImGui::End();

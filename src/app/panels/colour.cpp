@@ -220,16 +220,9 @@ void colour_panel(Session& s) {
     ColourChoice& c = s.colours.choice;
     if (!c.shown || !s.paint_thread) return;
     Ui& ui = s.ui;
-    const float pad = ui.px(10), width = ui.px(kWidth);
-    float x = static_cast<float>(s.view.area.x) + pad;
-    if (s.preferences.ui.left_handed) x = static_cast<float>(s.view.area.x + s.view.area.width) - pad - width;
-    ImGui::SetNextWindowPos(ImVec2(x, static_cast<float>(s.view.area.y) + pad), ImGuiCond_Appearing);
-    ImGui::SetNextWindowSize(ImVec2(width, 0));
-    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0),
-                                        ImVec2(width, static_cast<float>(s.view.area.height) - 2 * pad));
-    ImGui::Begin("###colour", nullptr,
-                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoCollapse);
+    begin_panel_over(
+        ui, s.view.area,
+        {.name = "colour", .across = s.preferences.ui.left_handed ? 1.0f : 0, .width = kWidth, .moves = true});
     if (!c.match && !c.finder.busy()) wish(s, false);
     wheel(s);
     hex_field(s);
@@ -249,7 +242,7 @@ void colour_panel(Session& s) {
     recent(s);
     if (ui.button("Close the wheel", nullptr, 0)) c.shown = false;
     const float below = ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y - c.wheel_height;
-    c.room_for_wheel = static_cast<float>(s.view.area.height) - 2 * pad - below;
+    c.room_for_wheel = static_cast<float>(s.view.area.height) - 2 * ui.px(kPanelMargin) - below;
     ImGui::End();
 }
 

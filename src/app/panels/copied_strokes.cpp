@@ -1,11 +1,11 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 
 #include "app/panels/panels.h"
+#include "writer/copy/copied_glyph.h"
 
 /// \file
 /// The strokes of a character that is copied from a picture: numbered in the order of writing over the picture, and
@@ -16,13 +16,10 @@ namespace {
 constexpr float kSide = 320, kLeastSide = 150;  // pixels at a scale of 1, of the picture
 constexpr float kRest = 250;                    // the same, of what is above and below it
 constexpr float kChip = 26;
-/// sRGB; told apart without red and green (Okabe and Ito).
-constexpr std::array<unsigned, 6> kColours{IM_COL32(0, 114, 178, 255), IM_COL32(213, 94, 0, 255),
-                                           IM_COL32(0, 158, 115, 255), IM_COL32(204, 121, 167, 255),
-                                           IM_COL32(230, 159, 0, 255), IM_COL32(86, 180, 233, 255)};
 
 unsigned colour_of(std::size_t stroke) {
-    return kColours[stroke % kColours.size()];
+    const std::uint32_t c = writer::kStrokeColours[stroke % writer::kStrokeColours.size()];
+    return IM_COL32(c >> 16, c >> 8 & 0xff, c & 0xff, 255);
 }
 
 /// The square of the character on the screen.
@@ -55,7 +52,7 @@ void draw_picture(CopyInWork& copy, const Canvas& canvas) {
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const ImVec2 end(canvas.at.x + canvas.side, canvas.at.y + canvas.side);
     draw->AddRectFilled(canvas.at, end, IM_COL32(238, 236, 230, 255));
-    if (copy.fresh && !copy.picture.rgb.empty()) copy.texture = upload(copy.picture), copy.fresh = false;
+    if (copy.fresh && !copy.picture.rgb.empty()) upload(copy.texture, copy.picture), copy.fresh = false;
     if (!copy.texture || !copy.shown) return;
     // The picture's corners on the square: the inverse of `PictureInk::pixel_at`.
     const writer::PictureInk& ink = copy.shown->ink;
@@ -169,33 +166,30 @@ void order_row(Ui& ui, const CopyToEdit& c) {
     const auto columns = static_cast<std::size_t>(std::max(1.0f, std::floor((all + gap) / (chip + gap))));
     const ImVec2 start = ImGui::GetCursorScreenPos(), mouse = ImGui::GetIO().MousePos;
     const std::size_t n = c.copy.shown->order.size();
-    std::optional<std::size_t> active;
+    bool held = false;
     for (std::size_t s = 0; s < n; ++s) {
         const ImVec2 at(start.x + static_cast<float>(s % columns) * (chip + gap),
                         start.y + static_cast<float>(s / columns) * (chip + gap));
         ImGui::SetCursorScreenPos(at);
         ImGui::InvisibleButton(("order " + std::to_string(s)).c_str(), ImVec2(chip, chip));
         ui.mark("Order " + std::to_string(s + 1));
-        if (ImGui::IsItemActivated()) c.copy.dragged = s;
-        if (ImGui::IsItemActive()) active = s;
+        if (ImGui::IsItemActivated()) c.copy.dragged = StrokeDrag{s};
+        held = held || ImGui::IsItemActive();
         const ImVec2 end(at.x + chip, at.y + chip);
         ImDrawList* draw = ImGui::GetWindowDrawList();
         draw->AddRectFilled(at, end, colour_of(s), ui.px(4));
-        if (c.copy.dragged == s) draw->AddRect(at, end, ui.strong, ui.px(4), 0, ui.px(2));
+        if (c.copy.dragged && c.copy.dragged->stroke == s) draw->AddRect(at, end, ui.strong, ui.px(4), 0, ui.px(2));
         const std::string text = std::to_string(s + 1);
         const ImVec2 size = ImGui::CalcTextSize(text.c_str());
         draw->AddText(ImVec2(at.x + 0.5f * (chip - size.x), at.y + 0.5f * (chip - size.y)), IM_COL32_WHITE,
                       text.c_str());
     }
-    if (!active) return c.copy.dragged.reset();
+    if (!held || !c.ready()) return c.copy.dragged.reset();
     // The button that was pressed stays the active one; what moves is the stroke.
     const float column = std::floor((mouse.x - start.x) / (chip + gap)),
                 row = std::floor((mouse.y - start.y) / (chip + gap));
     if (column < 0 || row < 0 || column >= static_cast<float>(columns)) return;
-    const std::size_t over = static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column);
-    if (!c.copy.dragged || over >= n || over == *c.copy.dragged) return;
-    move_stroke(c, *c.copy.dragged, over, *active == *c.copy.dragged);
-    c.copy.dragged = over;
+    drag_stroke(c, static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column));
 }
 
 void buttons(Session& s, const CopyToEdit& c) {
@@ -219,28 +213,22 @@ void copied_strokes_panel(Session& s) {
     Lettering& l = s.tools.lettering;
     if (s.tools.active != Tool::text || !s.paint_thread || l.wanted.like.empty()) return;
     Ui& ui = s.ui;
-    const Area& area = s.view.area;
-    const float pad = ui.px(10), room = static_cast<float>(area.height) - 2 * pad;
+    const float room = static_cast<float>(s.view.area.height) - 2 * ui.px(kPanelMargin);
     const float side = std::clamp(room - ui.px(kRest), ui.px(kLeastSide), ui.px(kSide));
     const float width = std::max(side, ui.px(250)) + 2 * ImGui::GetStyle().WindowPadding.x;
-    ImGui::SetNextWindowPos(
-        ImVec2(static_cast<float>(area.x + area.width) - width - pad - ui.px(6), static_cast<float>(area.y) + pad),
-        ImGuiCond_Appearing);
-    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, 1e6f));
-    ImGui::SetNextWindowBgAlpha(0.95f);
-    ImGui::Begin((std::string(ui.tr("Copied strokes")) + "###copied").c_str(), nullptr,
-                 ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
-                     ImGuiWindowFlags_AlwaysAutoResize);
-    keep_in_view(s.view, pad);
+    begin_panel_over(
+        ui, s.view.area,
+        {.name = "Copied strokes", .across = 1, .width = width / ui.settings().scale, .has_bar = true, .moves = true});
     ImGui::BeginDisabled(s.reported.file.viewing);
-    const CopyToEdit c{l.copy, l.wanted};
+    const CopyToEdit c = copy_to_edit(l);
     canvas_part(ui, c, side);
     edit_row(ui, l.copy);
     if (l.copy.shown) order_row(ui, c);
     double threshold = l.wanted.correction.threshold;
     if (ui.slider("Threshold", threshold, {-writer::kMostThreshold, writer::kMostThreshold, "%.2f"},
                   "What counts as ink: more makes lines thicker. The strokes are found anew"))
-        correct(c, {.threshold = std::round(1000 * threshold) / 1000, .cuts = {}, .order = {}});
+        slide_threshold(c, threshold);
+    if (!ImGui::IsAnyItemActive()) l.copy.slides = false;
     buttons(s, c);
     ImGui::EndDisabled();
     ImGui::End();

@@ -76,15 +76,7 @@ void guide(Session& s) {
     }
     if (!s.tools.pointer_down && step.done(s)) return go_to_step(s, h.step + 1);
     Ui& ui = s.ui;
-    const float width = std::min(ui.px(400), static_cast<float>(s.view.area.width) - ui.px(40));
-    ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.view.area.x) + 0.5f * static_cast<float>(s.view.area.width),
-                                   static_cast<float>(s.view.area.y) + ui.px(14)),
-                            ImGuiCond_Always, ImVec2(0.5f, 0));
-    ImGui::SetNextWindowSize(ImVec2(width, 0));
-    ImGui::SetNextWindowBgAlpha(0.95f);
-    ImGui::Begin("###guide", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_NoFocusOnAppearing);
+    begin_panel_over(ui, s.view.area, {.name = "guide", .across = 0.5f, .width = 400});
     char count[16];
     std::snprintf(count, sizeof count, "%d / %d", h.step + 1, kCount);
     ImGui::PushFont(ui.large);

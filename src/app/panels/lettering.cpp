@@ -61,8 +61,7 @@ void text_field(Ui& ui, Lettering& l, bool take_keyboard) {
 
 void fault_line(Ui& ui, const Message& fault) {
     if (fault.empty()) return;
-    ImGui::PushStyleColor(
-        ImGuiCol_Text, ui.settings().theme == Theme::dark ? IM_COL32(255, 158, 115, 255) : IM_COL32(184, 26, 5, 255));
+    ImGui::PushStyleColor(ImGuiCol_Text, ui.wrong);
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(ui.sentence(fault).c_str());
     ImGui::PopTextWrapPos();
@@ -156,30 +155,11 @@ void direction_row(Ui& ui, writer::Direction& direction) {
 
 }  // namespace
 
-void keep_in_view(const ViewState& view, float pad) {
-    const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
-    const auto left = static_cast<float>(view.area.x) + pad, top = static_cast<float>(view.area.y) + pad;
-    const float right = left + static_cast<float>(view.area.width) - 2 * pad - size.x,
-                low = top + static_cast<float>(view.area.height) - 2 * pad - ImGui::GetFrameHeight();
-    const ImVec2 kept(std::clamp(at.x, left, std::max(left, right)), std::clamp(at.y, top, std::max(top, low)));
-    if (kept.x != at.x || kept.y != at.y) ImGui::SetWindowPos(kept);
-}
-
 void lettering_panel(Session& s) {
     if (s.tools.active != Tool::text || !s.paint_thread) return;
     Ui& ui = s.ui;
     Lettering& l = s.tools.lettering;
-    const float pad = ui.px(10),
-                width = std::min(ui.px(kLetteringWidth), static_cast<float>(s.view.area.width) - 2 * pad);
-    ImGui::SetNextWindowPos(
-        ImVec2(static_cast<float>(s.view.area.x) + pad + ui.px(6), static_cast<float>(s.view.area.y) + pad),
-        ImGuiCond_Appearing);
-    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, 1e6f));
-    ImGui::SetNextWindowBgAlpha(0.95f);
-    ImGui::Begin((std::string(ui.tr("Write")) + "###lettering").c_str(), nullptr,
-                 ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
-                     ImGuiWindowFlags_AlwaysAutoResize);
-    keep_in_view(s.view, pad);
+    begin_panel_over(ui, s.view.area, {.name = "Write", .width = kLetteringWidth, .has_bar = true, .moves = true});
     ImGui::BeginDisabled(s.reported.file.viewing);
     text_field(ui, l, ImGui::IsWindowAppearing() && l.wanted.text.empty() && !s.reported.file.viewing);
     style_row(ui, l);

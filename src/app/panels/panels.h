@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/panels/panel_over.h"
 #include "app/session/open_close.h"
 #include "app/session/open_files.h"
 #include "app/session/session.h"
@@ -97,8 +98,6 @@ MenuChoice menu_bar(const MenuParts& s);
 void tool_options(const OptionParts& s, float left, float top, float width);
 /// The column of tools at the window's edge.
 void tool_strip(Session& s, float top, float bottom, float left);
-/// Moves the window that is drawn into the view, which may have changed. `pad`: pixels to its edges.
-void keep_in_view(const ViewState& view, float pad);
 /// Fields for the place of a drawing or a text.
 void place_fields(Ui& ui, ToolState& tools);
 /// The text that is written, over the view, while its tool is active.

@@ -1,4 +1,3 @@
-#include <epoxy/gl.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -27,7 +26,7 @@ unsigned reference_texture(Session& s, ReferenceImage& r) {
         const io::Image8 image = io::decode_image8(r.bytes, r.name, std::size_t{1} << 26);
         r.pixels_across = image.width;
         r.pixels_down = image.height;
-        r.texture = upload(small_picture(image, kMostAcross));
+        upload(r.texture, small_picture(image, kMostAcross));
     } catch (const std::exception& error) {
         r.broken = true;
         show_message(s.status, message_of(error));
@@ -37,7 +36,7 @@ unsigned reference_texture(Session& s, ReferenceImage& r) {
 
 void remove_reference(Session& s, std::size_t i) {
     ReferenceImage& r = s.view.references.images[i];
-    if (r.texture) glDeleteTextures(1, &r.texture);
+    release(r.texture);
     s.paint_thread->post(DetachFromProject{io::kReferences, r.id});
     s.view.references.images.erase(s.view.references.images.begin() + static_cast<std::ptrdiff_t>(i));
 }

@@ -100,14 +100,9 @@ void comparison_bar(Session& s) {
     if (!line || !s.paint_thread) return;
     Ui& ui = s.ui;
     const std::string title = ui.fitted(title_of(ui, *line), ui.px(140));
-    const auto left = static_cast<float>(all.swipe || all.width == 0 ? s.view.area.x : all.x),
-               right = static_cast<float>(s.view.area.x + s.view.area.width);
-    ImGui::SetNextWindowPos(ImVec2(0.5f * (left + right), static_cast<float>(s.view.area.y) + ui.px(10)),
-                            ImGuiCond_Always, ImVec2(0.5f, 0));
-    ImGui::SetNextWindowBgAlpha(0.9f);
-    ImGui::Begin("###comparison", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);  // above the images
+    Area over = s.view.area;  // both views, where they are side by side
+    if (!all.swipe && all.width != 0) over.x = all.x, over.width += s.view.area.x - all.x;
+    begin_panel_over(ui, over, {.name = "comparison", .across = 0.5f});
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(all.ready ? title.c_str() : ui.tr("Painting the snapshot"));
     ImGui::SameLine();

@@ -11,6 +11,8 @@ namespace tuft::app {
 
 namespace {
 
+constexpr float kInsetWidth = 190;  // pixels at a scale of 1
+
 // As much of it as there is room for; the rest under the cursor.
 void one_line(const Session& s, const std::string& text, float room) {
     const std::string shown = s.ui.fitted(text, std::max(0.0f, room));
@@ -80,9 +82,7 @@ Notice notice_of(const Session& s) {
         if (n > 0)
             waits = " (" + ui.sentence(Message(n == 1 ? "{} stroke waits in memory" : "{} strokes wait in memory", n)) +
                     ")";
-        const unsigned red =
-            ui.settings().theme == Theme::dark ? IM_COL32(255, 140, 107, 255) : IM_COL32(184, 26, 5, 255);
-        return {ui.tr("Not kept on disk") + waits + ": " + ui.sentence(s.reported.file.trouble), red};
+        return {ui.tr("Not kept on disk") + waits + ": " + ui.sentence(s.reported.file.trouble), ui.wrong};
     }
     // As long as it takes to read it.
     const std::string text = ui.sentence(s.status.text);
@@ -93,17 +93,9 @@ Notice notice_of(const Session& s) {
 // A notice that is longer than the line: in a box over the view's lower edge, all of it.
 void notice_box(const Session& s, const Notice& notice) {
     const Ui& ui = s.ui;
-    const float pad = ui.px(10), room = std::min(static_cast<float>(s.view.area.width) - 2 * pad, ui.px(620));
-    const float bottom = static_cast<float>(s.view.area.y + s.view.area.height) - pad;
+    const float room = std::min(static_cast<float>(s.view.area.width) - 2 * ui.px(kPanelMargin), ui.px(620));
     const float wrap = room - 2 * ImGui::GetStyle().WindowPadding.x;
-    ImGui::SetNextWindowPos(
-        ImVec2(static_cast<float>(s.view.area.x) + 0.5f * static_cast<float>(s.view.area.width), bottom), 0,
-        ImVec2(0.5f, 1));
-    ImGui::SetNextWindowBgAlpha(0.95f);
-    ImGui::Begin("###notice", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing |
-                     ImGuiWindowFlags_AlwaysAutoResize);
+    begin_panel_over(ui, s.view.area, {.name = "notice", .across = 0.5f, .down = 1, .takes_input = false});
     ImGui::PushStyleColor(ImGuiCol_Text, notice.colour);
     ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + wrap);
     ImGui::TextUnformatted(notice.text.c_str());
@@ -230,17 +222,17 @@ void draw_side(const Session& s, ImVec2 at, ImVec2 size) {
 void tuft_inset(Session& s) {
     if (!s.view.show_tuft_inset || !s.paint_thread || s.view.tuft.state.branches.empty()) return;
     Ui& ui = s.ui;
-    const float width = ui.px(190), height = ui.px(206), pad = ui.px(10);
+    const float width = ui.px(kInsetWidth), height = ui.px(206);
     if (static_cast<float>(s.view.area.width) < 3 * width || static_cast<float>(s.view.area.height) < 2 * height)
         return;  // the model needs the room
-    ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.view.area.x) + pad,
-                                   static_cast<float>(s.view.area.y + s.view.area.height) - height - pad));
-    ImGui::SetNextWindowSize(ImVec2(width, height));
-    ImGui::SetNextWindowBgAlpha(0.82f);
-    ImGui::Begin("###tuft", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing |
-                     ImGuiWindowFlags_NoBringToFrontOnFocus);
+    begin_panel_over(ui, s.view.area,
+                     {.name = "tuft",
+                      .down = 1,
+                      .width = kInsetWidth,
+                      .height = height,
+                      .alpha = 0.82f,
+                      .below = true,
+                      .takes_input = false});
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const ImVec2 size(ImGui::GetContentRegionAvail().x, ui.px(126));
     ImGui::PushClipRect(at, ImVec2(at.x + size.x, at.y + size.y), true);

@@ -29,7 +29,7 @@ struct Row {
 void brush_row(const OptionParts& s, const Row& row) {
     Ui& ui = s.ui;
     const brush::SizedName sized = brush::sized_name(s.brush.preset);
-    const double whole = brush::tuft_width(shipped_brush(sized.base));
+    const double whole = brush::tuft_width(s.brush.shelf.at(sized.base).preset);
     double now = whole * sized.factor;
     if (ui.named_slider("Tuft size", now, {whole * brush::kLeastSize, whole * brush::kMostSize, "%.1f mm", kMillimetre},
                         "How wide it is; its length goes with it", row.width))

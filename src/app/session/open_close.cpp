@@ -47,7 +47,8 @@ void forget_model(Session& s) {
     const bool swipe = s.journal.snapshots.swipe;
     s.journal = {};
     s.journal.snapshots.swipe = swipe;
-    s.view.references.images.clear();  // the textures are the context's until it goes
+    for (ReferenceImage& image : s.view.references.images) release(image.texture);
+    s.view.references.images.clear();
     s.view.tuft.state = {};
     s.project.revision.mismatches.clear();
     s.project.revision.previous.clear();
@@ -230,6 +231,7 @@ void close_now(Session& s, const CloseRequest& request) {
 void close_model(Session& s) {
     if (!s.paint_thread) return;
     remember_brush(s.brush, s.paint_thread.get());
+    finish_kept_copies(s);
     s.colours.choice.in_hand.reset();
     s.layers.list.pictures.clear();
     const bool drew = leave_arm(s.arm, s.paint_thread.get());

@@ -3,10 +3,16 @@
 #include <algorithm>
 
 #include "core/files/files.h"
+#include "core/files/toml_text.h"
 
 namespace fs = std::filesystem;
 
 namespace tuft::app {
+namespace {
+
+constexpr std::size_t kMostTomlBytes = (std::size_t{1} << 20) + brush::kMostGeometryBytes;
+
+}  // namespace
 
 void open_writing(Session& s, const fs::path& path) {
     if (!s.paint_thread) return show_message(s.status, "Open a model first; then the writing can be placed on it.");
@@ -33,16 +39,33 @@ fs::path glyphs_beside(const fs::path& file) {
 }
 
 void keep_copy(Session& s) {
-    std::optional<KeptCopy> copy = copy_to_keep(s.tools.lettering.wanted);
-    if (!copy || s.reported.file.viewing) return;
+    if (s.reported.file.viewing) return;
+    s.tools.copies.keep(s.tools.lettering.wanted, s.tools.lettering.kept);
+}
+
+void poll_kept_copies(Session& s) {
+    std::optional<CopyKeeper::Read> read = s.tools.copies.poll();
+    if (!read || !s.paint_thread) return;
+    if (!read->copy)
+        return show_message(s.status, Message("The copied picture is not kept in the project: {}", read->fault));
     std::vector<KeptCopy>& kept = s.tools.lettering.kept;
-    const auto same = std::find_if(kept.begin(), kept.end(), [&](const KeptCopy& k) { return k.id == copy->id; });
-    if (same == kept.end() && kept.size() >= io::kMostAttachments) return;
-    s.paint_thread->post(AttachToProject{io::kCopies, to_attachment(*copy)});
+    const auto same = std::find_if(kept.begin(), kept.end(), [&](const KeptCopy& k) { return k.id == read->copy->id; });
+    if (same == kept.end() && kept.size() >= io::kMostAttachments)
+        return show_message(s.status,
+                            "The project holds as many copied pictures as it can; this one is not kept in it.");
+    if (same == kept.end() || !same->says_the_same(*read->copy))
+        s.paint_thread->post(AttachToProject{io::kCopies, std::move(read->attachment)});
     if (same == kept.end())
-        kept.push_back(std::move(*copy));
+        kept.push_back(std::move(*read->copy));
     else
-        *same = std::move(*copy);
+        *same = std::move(*read->copy);
+}
+
+void finish_kept_copies(Session& s) {
+    while (s.tools.copies.busy()) {
+        s.tools.copies.wait();
+        poll_kept_copies(s);
+    }
 }
 
 void take_kept_copy(Session& s, const KeptCopy& copy) {
@@ -79,11 +102,13 @@ void open_brush(Session& s, const fs::path& path) {
 
 void open_brush_or_ink(Session& s, const fs::path& path) {
     try {
-        brush::load_preset(fs::absolute(path).string());
-    } catch (const Error&) {
-        return open_ink(s.paint_thread.get(), s.status, path);
+        // An ink names its pigments; a brush with a fault is a brush.
+        const std::vector<char> bytes = read_file(path, kMostTomlBytes);
+        const bool is_ink = parse_toml({bytes.data(), bytes.size()}, path.string()).contains("pigment");
+        is_ink ? open_ink(s.paint_thread.get(), s.status, path) : open_brush(s, path);
+    } catch (const Error& error) {
+        show_message(s.status, error.message());
     }
-    open_brush(s, path);
 }
 
 void open_ink(PaintThread* work, StatusMessage& status, const fs::path& path) {

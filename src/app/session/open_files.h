@@ -15,8 +15,13 @@ void open_writing(Session& s, const std::filesystem::path& path);
 /// Returns the source of characters that a file belongs to: the folder of a file of one character (hanzi-writer-data,
 /// KanjiVG), else the file.
 std::filesystem::path glyphs_beside(const std::filesystem::path& file);
-/// Stores the copied character that is written in the project, in place of an earlier copy of the picture.
+/// Stores the copied character that is written in the project, in place of an earlier copy of the picture. Returns at
+/// once.
 void keep_copy(Session& s);
+/// Takes the pictures that were read to be kept; says why one is not kept.
+void poll_kept_copies(Session& s);
+/// Waits for them, before the project is closed.
+void finish_kept_copies(Session& s);
 /// Copies a character that the project keeps.
 void take_kept_copy(Session& s, const KeptCopy& copy);
 /// Writes the copied character as JSON (hanzi-writer-data), which is a source of characters.

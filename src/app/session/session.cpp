@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/session/open_close.h"
+#include "app/session/open_files.h"
 
 namespace fs = std::filesystem;
 
@@ -78,9 +79,14 @@ void take_events(Session& s, PaintEvents& e) {
 void poll_session(Session& s) {
     const bool opened = poll_opening(s);
     poll_paint_thread(s);
-    if (opened) choose_brush(s.brush, *s.paint_thread, s.journal.lines, s.tools.pointer.pressure);
+    if (opened) {
+        Message away = choose_brush(s.brush, *s.paint_thread, s.journal.lines, s.tools.pointer.pressure);
+        if (!away.empty() && s.status.text.empty()) show_message(s.status, std::move(away));
+    }
+    s.brush.shelf.watch();
     poll_colour(s.colours, s.brush);
     s.tools.letters.update(s.tools.lettering);
+    poll_kept_copies(s);
     // Painting a stroke of the hand comes first.
     s.brush.tried.update(!s.tools.pointer_down && !s.project.opening.running() &&
                          (!s.paint_thread || s.paint_thread->idle()));
@@ -104,8 +110,8 @@ void poll_paint_thread(Session& s) {
 
 bool is_settled(const Session& s) {
     return !s.project.opening.running() && !s.colours.choice.finder.busy() &&
-           !s.tools.letters.busy(s.tools.lettering) && (!s.paint_thread || s.paint_thread->idle()) &&
-           !s.tools.pointer_down;
+           !s.tools.letters.busy(s.tools.lettering) && !s.tools.copies.busy() &&
+           (!s.paint_thread || s.paint_thread->idle()) && !s.tools.pointer_down;
 }
 
 }  // namespace tuft::app

@@ -1,5 +1,7 @@
 #include "app/session/top_dialog.h"
 
+#include <utility>
+
 namespace tuft::app {
 
 bool is_dialog_open(const Session& s) {
@@ -56,6 +58,13 @@ bool close_top_dialog(Session& s) {
     else
         return false;
     return true;
+}
+
+bool close_top_panel(Session& s) {
+    if (!s.paint_thread) return false;
+    for (bool* shown : {&s.panels.show_brushes, &s.colours.choice.shown, &s.arm.shown, &s.colours.palette.shown})
+        if (std::exchange(*shown, false)) return true;
+    return false;
 }
 
 }  // namespace tuft::app

@@ -53,7 +53,18 @@ bool loads(const std::string& brush) {
         brush::load_preset(brush);
         return true;
     } catch (const Error&) {
-        return false;  // of another version, or a file that is gone
+        return false;  // of another version, or a file that is away
+    }
+}
+
+void remember_own(const BrushSettings& brush) {
+    std::string text;
+    for (const std::string& preset : brush.presets)
+        if (is_own_brush(preset)) text += preset + "\n";
+    try {
+        write_file(own_path(), text.data(), text.size());
+    } catch (const Error&) {
+        // The list holds for this run then.
     }
 }
 
@@ -71,36 +82,33 @@ double line_width(const std::string& name, double pressure) {
 
 }  // namespace
 
-const brush::Preset& shipped_brush(const std::string& name) {
-    static std::map<std::string, brush::Preset> known;
-    auto at = known.find(name);
-    if (at == known.end()) at = known.emplace(name, brush::load_preset(name)).first;
-    return at->second;
-}
-
 std::vector<std::string> remembered_own_brushes() {
     std::vector<std::string> files;
     std::ifstream in(own_path());
     for (std::string file; files.size() < kMostOwn && std::getline(in, file);)
-        if (loads(file)) files.push_back(file);
+        if (is_own_brush(file) && std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
     return files;
 }
 
 void take_own_brush(BrushSettings& brush, const fs::path& file) {
     const std::string name = fs::absolute(file).lexically_normal().string();
-    brush::load_preset(name);
+    if (const ShelfBrush& read = brush.shelf.read(name); !read.fault.empty()) throw Error(read.fault);
     if (std::find(brush.presets.begin(), brush.presets.end(), name) == brush.presets.end()) {
         brush.presets.push_back(name);
-        std::string text;
-        for (const std::string& preset : brush.presets)
-            if (preset.find('/') != std::string::npos) text += preset + "\n";
-        try {
-            write_file(own_path(), text.data(), text.size());
-        } catch (const Error&) {
-            // It is in the list for this run then.
-        }
+        remember_own(brush);
     }
     brush.preset = name;
+}
+
+void take_brush(BrushSettings& brush, const std::string& name) {
+    // A file that was away may be back since the last look.
+    if (!brush.shelf.at(name).fault.empty())
+        if (const ShelfBrush& now = brush.shelf.read(name); !now.fault.empty()) throw Error(now.fault);
+    brush.preset = name;
+}
+
+void forget_own_brush(BrushSettings& brush, const std::string& name) {
+    if (is_own_brush(name) && std::erase(brush.presets, name) > 0) remember_own(brush);
 }
 
 double first_line_width(const Box& box) {
@@ -126,17 +134,23 @@ std::string first_brush(const std::vector<std::string>& brushes, const std::stri
     return brush::name_of({best, factor});
 }
 
-void choose_brush(BrushSettings& brush, const PaintThread& work, std::span<const StrokeLine> lines, double pressure) {
+Message choose_brush(BrushSettings& brush, const PaintThread& work, std::span<const StrokeLine> lines,
+                     double pressure) {
+    Message fault;
     const auto take = [&](const std::string& name) {
         if (!loads(name)) return false;
         brush.preset = brush.remembered = name;
         return true;
     };
-    for (const auto& [name, model] : memory())
-        if (model == work.source() && take(name)) return;
+    for (const auto& [name, model] : memory()) {
+        if (model != work.source()) continue;
+        if (take(name)) return {};
+        if (is_own_brush(name)) fault = brush.shelf.at(brush::sized_name(name).base).fault;
+    }
     for (auto line = lines.rbegin(); line != lines.rend(); ++line)
-        if (line->action == stroke::EntryKind::stroke && !line->on_palette && take(line->brush)) return;
+        if (line->action == stroke::EntryKind::stroke && !line->on_palette && take(line->brush)) return fault;
     take(first_brush(brush.presets, brush.preset, pressure, first_line_width(work.model().mesh->bounds)));
+    return fault;
 }
 
 void remember_brush(BrushSettings& brush, const PaintThread* work) {
@@ -155,12 +169,8 @@ void remember_brush(BrushSettings& brush, const PaintThread* work) {
     }
 }
 
-bool brush_can_be_turned(const BrushSettings& brush) {
-    try {
-        return brush::can_be_turned(brush::load_preset(brush.preset));
-    } catch (const Error&) {
-        return false;  // a file that is gone
-    }
+bool brush_can_be_turned(BrushSettings& brush) {
+    return brush::can_be_turned(brush.shelf.at(brush::sized_name(brush.preset).base).preset);
 }
 
 void size_brush(BrushSettings& brush, StatusMessage& status, double factor) {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "app/document/pictures/tried_strokes.h"
+#include "app/state/brush_shelf.h"
 #include "app/widgets/status_message.h"
-#include "brush/preset/preset.h"
 #include "core/geometry/types.h"
 
 /// \file
@@ -29,16 +29,19 @@ struct BrushSettings {
     std::string tip_ink = "carbon";
     double tip_depth = 0.3;  ///< of the tip's ink, fraction of the tuft's length
     double dip_depth = 1;    ///< of Dip and Wipe, fraction of the tuft's length
+    BrushShelf shelf;        ///< all of `presets`
     TriedStrokes tried;      ///< pictures of strokes
     double dip_side = 0;     ///< of Dip and Wipe, fraction of the width from the right flank (> 0) or the left; 0: all
 };
 
-/// Returns a brush of the list, read once.
-const brush::Preset& shipped_brush(const std::string& name);
+/// Takes a brush of the list in its own size. Throws `Error` where it cannot be read.
+void take_brush(BrushSettings& brush, const std::string& name);
 /// Adds the brush of a TOML file to the list, where it is not in it, takes it, and remembers it for the next start.
 /// Throws `Error` for a file that is no brush.
 void take_own_brush(BrushSettings& brush, const std::filesystem::path& file);
-/// Returns the files of brushes that were added before and can still be read.
+/// Takes the brush of a file off the list, at the next start too. The file stays.
+void forget_own_brush(BrushSettings& brush, const std::string& name);
+/// Returns the files of brushes that were added before, also those that are away.
 std::vector<std::string> remembered_own_brushes();
 /// Returns the line width in metres for the first brush on a model, and the brush of the same hair as `hair_of` that
 /// draws it at `pressure`.
@@ -46,11 +49,13 @@ double first_line_width(const Box& box);
 std::string first_brush(const std::vector<std::string>& brushes, const std::string& hair_of, double pressure,
                         double width);
 /// Chooses the brush last used for this model, else that of the last of `lines`, else one to the size of the model.
-void choose_brush(BrushSettings& brush, const PaintThread& work, std::span<const StrokeLine> lines, double pressure);
-/// Stores the chosen brush for this model, where the user chose it. Without a model it does nothing.
+/// Returns what is wrong with the one last used; empty: nothing.
+Message choose_brush(BrushSettings& brush, const PaintThread& work, std::span<const StrokeLine> lines, double pressure);
+/// Stores the chosen brush for this model, where the user chose it. Without a model it does nothing. One that
+/// `choose_brush` took in place of a brush whose file is away is not stored: that one is taken again when it is back.
 void remember_brush(BrushSettings& brush, const PaintThread* work);
 /// Returns whether turning the brush about its axis matters: `brush::can_be_turned`.
-bool brush_can_be_turned(const BrushSettings& brush);
+bool brush_can_be_turned(BrushSettings& brush);
 /// Multiplies the brush's size by `factor`, within the sizes that exist.
 void size_brush(BrushSettings& brush, StatusMessage& status, double factor);
 

@@ -58,7 +58,7 @@ std::string ink_named(const Session& s, const SettingValue& v) {
 constexpr Setting kBrushSettings[] = {
     {"brush",
      [](Session& s, const SettingValue& v) {
-         s.brush.preset = s.brush.presets[static_cast<std::size_t>(v.one_of(s.brush.presets))];
+         take_brush(s.brush, s.brush.presets[static_cast<std::size_t>(v.one_of(s.brush.presets))]);
      }},
     {"brush-size", [](Session& s, const SettingValue& v) { size_brush(s.brush, s.status, v.number); }},
     {"ink", [](Session& s, const SettingValue& v) { s.brush.ink = ink_named(s, v); }},
@@ -126,12 +126,20 @@ constexpr Setting kToolSettings[] = {
     {"text-like", [](Session& s, const SettingValue& v) { copy_picture(s.tools.lettering, v.text); }},
     {"copy-threshold",
      [](Session& s, const SettingValue& v) {
-         s.tools.lettering.wanted.correction = {
-             .threshold = v.within(-writer::kMostThreshold, writer::kMostThreshold), .cuts = {}, .order = {}};
+         slide_threshold(copy_to_edit(s.tools.lettering), v.within(-writer::kMostThreshold, writer::kMostThreshold));
      }},
     {"copy-cut",
-     [](Session& s, const SettingValue& v) { s.tools.lettering.wanted.correction.cuts = writer::parse_cuts(v.text); }},
-    {"copy-order", [](Session& s, const SettingValue& v) { s.tools.lettering.wanted.correction.order = v.text; }},
+     [](Session& s, const SettingValue& v) {
+         writer::CopyCorrection next = s.tools.lettering.wanted.correction;
+         next.cuts = writer::parse_cuts(v.text);
+         correct(copy_to_edit(s.tools.lettering), std::move(next));
+     }},
+    {"copy-order",
+     [](Session& s, const SettingValue& v) {
+         writer::CopyCorrection next = s.tools.lettering.wanted.correction;
+         next.order = v.text;
+         correct(copy_to_edit(s.tools.lettering), std::move(next));
+     }},
     {"text-fit", [](Session& s, const SettingValue& v) { s.tools.lettering.fit = v.on; }},
     {"mask-kind", [](Session& s, const SettingValue& v) { s.masks.choice.kind = stroke::mask_kind_of(v.text); }},
     {"mask-within", [](Session& s, const SettingValue& v) { s.masks.choice.within = v.within(0, 180) * kDegree; }},

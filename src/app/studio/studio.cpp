@@ -55,6 +55,7 @@ Studio::~Studio() {
     finish();
     session_.project.start_page.pictures.release();
     session_.brush.tried.release();
+    release(session_.tools.lettering.copy.texture);
 }
 
 void Studio::set(const std::string& name, const std::string& value) {

@@ -236,6 +236,7 @@ void StudioInput::key(const Event& e) {
     }
     if (s.dialogs.key_to_assign) return assign_key(e);
     if (s.paint_thread && !is_dialog_open(s) && curve_.key(e, now_)) return;
+    if (escape && close_top_panel(s)) return;
     if (s.paint_thread && !is_dialog_open(s) && e.key == GLFW_KEY_F2) {
         s.layers.list.renamed = s.layers.active;
         s.layers.list.focus = true;

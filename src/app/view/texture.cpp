@@ -121,16 +121,15 @@ void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke
     const std::size_t size = colour_.size;
     parallel_for(slots.size(), kTilesAtOnce, [&](std::size_t begin, std::size_t end) {
         for (const std::uint32_t slot : slots.subspan(begin, end - begin)) {
-            const std::size_t tile = map.tile_of_slot[slot];
-            const std::size_t x0 = tile % map.tiles_per_side * atlas::kTile,
-                              y0 = tile / map.tiles_per_side * atlas::kTile;
+            const auto [x0, y0] = atlas::texel_place(map, slot, 0);
             std::array<float, atlas::kTileTexels> height{};
             if (wetness_)
                 height = liquid_of(painting, slot);
             else if (stack.touched(slot))
                 height = ink::shade_tile(stack, slot, painting.appearance().substrate(), false).height;
             for (std::size_t t = 0; t < atlas::kTileTexels; ++t) {
-                const std::size_t x = x0 + t % atlas::kTile, y = y0 + t / atlas::kTile;
+                const std::size_t x = static_cast<std::size_t>(x0) + t % atlas::kTile,
+                                  y = static_cast<std::size_t>(y0) + t / atlas::kTile;
                 if (x < size && y < size && map.tiles[slot].cluster[t] != atlas::kNoCluster)
                     height_[y * size + x] = code_of(height[t]);
             }
@@ -165,11 +164,10 @@ void Texture::show_veil(const stroke::MaskTexels* mask, const stroke::Document& 
     const std::size_t size = colour_.size;
     veil_.assign(size * size, 0);
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
-        const std::size_t tile = map.tile_of_slot[slot];
-        const std::size_t x0 = tile % map.tiles_per_side * atlas::kTile, y0 = tile / map.tiles_per_side * atlas::kTile;
+        const auto [x0, y0] = atlas::texel_place(map, slot, 0);
         for (int t = 0; t < atlas::kTileTexels; ++t) {
-            const std::size_t x = x0 + static_cast<std::size_t>(t % atlas::kTile),
-                              y = y0 + static_cast<std::size_t>(t / atlas::kTile);
+            const std::size_t x = static_cast<std::size_t>(x0 + t % atlas::kTile),
+                              y = static_cast<std::size_t>(y0 + t / atlas::kTile);
             if (x < size && y < size && map.tiles[slot].cluster[static_cast<std::size_t>(t)] != atlas::kNoCluster)
                 veil_[y * size + x] = static_cast<std::uint8_t>(255 - mask->coverage(slot, t));
         }
@@ -179,25 +177,17 @@ void Texture::show_veil(const stroke::MaskTexels* mask, const stroke::Document& 
 
 std::vector<render::TilePixels> Texture::show_marks(Marks marks, const stroke::Document& painting) {
     const atlas::TexelMap& map = painting.model().texels;
-    const auto per_side = static_cast<int>(map.tiles_per_side), most = per_side * atlas::kTile;
-    std::vector<std::array<int, 2>> inked;
+    std::vector<atlas::TexelPlace> inked;
     for (const auto& [slot, tile] : marks)
-        for (int t = 0; t < atlas::kTileTexels; ++t)
-            if (tile[static_cast<std::size_t>(t)] == kInked) {
-                const auto at = static_cast<int>(map.tile_of_slot[slot]);
-                inked.push_back(
-                    {at % per_side * atlas::kTile + t % atlas::kTile, at / per_side * atlas::kTile + t / atlas::kTile});
-            }
+        for (std::uint32_t t = 0; t < atlas::kTileTexels; ++t)
+            if (tile[t] == kInked) inked.push_back(atlas::texel_place(map, slot, t));
     for (const auto& [x0, y0] : inked)
         for (int dy = -kRimTexels; dy <= kRimTexels; ++dy)
             for (int dx = -kRimTexels; dx <= kRimTexels; ++dx) {
-                const int x = x0 + dx, y = y0 + dy;
-                if (dx * dx + dy * dy > kRimTexels * kRimTexels || x < 0 || y < 0 || x >= most || y >= most) continue;
-                const std::uint32_t slot =
-                    map.slot_of_tile[static_cast<std::size_t>(y / atlas::kTile * per_side + x / atlas::kTile)];
-                const auto t = static_cast<std::size_t>(y % atlas::kTile * atlas::kTile + x % atlas::kTile);
-                if (slot == kNone || map.tiles[slot].cluster[t] == atlas::kNoCluster) continue;
-                std::uint8_t& mark = marks[slot][t];
+                if (dx * dx + dy * dy > kRimTexels * kRimTexels) continue;
+                const atlas::TexelRef ref = atlas::texel_ref(map, x0 + dx, y0 + dy);
+                if (!ref.valid()) continue;
+                std::uint8_t& mark = marks[ref.slot][ref.texel];
                 if (mark == kNotMarked) mark = kRim;
             }
     std::set<std::uint32_t> changed;
@@ -306,11 +296,9 @@ const std::vector<render::GlBox>& Texture::boxes_of(std::uint32_t index, const a
     const int most = per_side * atlas::kTile;
     for (int y = std::max(0, y0 - kReach); y < std::min(most, y0 + atlas::kTile + kReach); ++y)
         for (int x = std::max(0, x0 - kReach); x < std::min(most, x0 + atlas::kTile + kReach); ++x) {
-            const std::uint32_t slot =
-                map.slot_of_tile[static_cast<std::size_t>(y / atlas::kTile * per_side + x / atlas::kTile)];
-            const int t = y % atlas::kTile * atlas::kTile + x % atlas::kTile;
-            if (slot == kNone || map.tiles[slot].cluster[static_cast<std::size_t>(t)] == atlas::kNoCluster) continue;
-            const Vec3f lo = map.position(slot, t) - 2 * texel, hi = map.position(slot, t) + 2 * texel;
+            const atlas::TexelRef ref = atlas::texel_ref(map, x, y);
+            if (!ref.valid()) continue;
+            const Vec3f centre = map.position(ref.slot, ref.texel), lo = centre - 2 * texel, hi = centre + 2 * texel;
             const auto near = std::ranges::find_if(boxes, [&](const render::GlBox& b) {
                 const Vec3f size = glm::max(b.hi, hi) - glm::min(b.lo, lo);
                 return std::max({size.x, size.y, size.z}) <= widest;

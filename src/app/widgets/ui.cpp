@@ -185,6 +185,7 @@ void Ui::style() {
     accent = ImGui::ColorConvertFloat4ToU32(blue);
     faint = ImGui::ColorConvertFloat4ToU32(c[ImGuiCol_TextDisabled]);
     strong = ImGui::ColorConvertFloat4ToU32(c[ImGuiCol_Text]);
+    wrong = dark ? IM_COL32(255, 140, 107, 255) : IM_COL32(184, 26, 5, 255);
 }
 
 const char* Ui::tr(const char* english) const {

@@ -119,6 +119,7 @@ class Ui {
     ImFont* large = nullptr;
     bool has_chinese = false;                    ///< a font of the system has Chinese characters
     unsigned accent = 0, faint = 0, strong = 0;  ///< ImU32 colours of the theme
+    unsigned wrong = 0;                          ///< of a text that says what went wrong
 
   private:
     std::string id(const char* label) const;

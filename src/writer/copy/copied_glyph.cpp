@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
@@ -22,7 +21,6 @@ constexpr double kLeastHalf = 1;       // units
 constexpr double kLongestHead = 90;    // units
 constexpr double kCornerHead = 1.25;   // of the half width: a corner lies so far from the middle of a head
 constexpr double kInset = 12;          // units between the begin of a centre line and the edge
-constexpr std::array<const char*, 6> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};
 
 /// The centre line of a stroke with half widths. `through`: where it runs through a junction.
 struct CopiedLine {
@@ -199,7 +197,7 @@ std::string numbered_svg(const Cells& ink, const Skeleton& skeleton, const Strok
         for (const PieceUse& use : order[s]) {
             std::vector<Vec2> line = skeleton.pieces[use.piece].line;
             if (use.reversed) std::reverse(line.begin(), line.end());
-            const char* colour = kColours[s % kColours.size()];
+            const std::string colour = fmt::format("#{:06x}", kStrokeColours[s % kStrokeColours.size()]);
             const Vec2 end = line.back(), d = end - line[line.size() - std::min<std::size_t>(line.size(), 5)];
             const double size = std::max(glm::length(d), 1e-9);
             const Vec2 on = d / size, side(-on.y, on.x);
@@ -210,8 +208,7 @@ std::string numbered_svg(const Cells& ink, const Skeleton& skeleton, const Strok
                                colour);
             const Vec2 middle = line[line.size() / 2];
             // The halo is a text of its own: some viewers ignore paint-order.
-            for (const std::string& look :
-                 {std::string("#fff\" stroke=\"#fff\" stroke-width=\"6"), std::string(colour)})
+            for (const std::string& look : {std::string("#fff\" stroke=\"#fff\" stroke-width=\"6"), colour})
                 numbers += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" fill=\"{}\">{}</text>\n", middle.x + 6,
                                        kSide - middle.y - 6, look, use.piece + 1);
         }

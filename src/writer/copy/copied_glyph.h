@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 
 #include "writer/copy/stroke_order.h"
@@ -16,6 +18,11 @@ namespace tuft::writer {
 /// besides to each that covers it where it runs through a junction. Preconditions: the order is one of the skeleton's
 /// pieces. Cost: cells × points of the lines.
 Glyph copied_glyph(const Cells& ink, const Skeleton& skeleton, const StrokeOrder& order, char32_t code);
+
+/// Colours of strokes that lie beside each other, in turn, sRGB as 0xrrggbb; told apart without red and green (Okabe
+/// and Ito 2008).
+inline constexpr std::array<std::uint32_t, 6> kStrokeColours{0x0072b2, 0xd55e00, 0x009e73,
+                                                             0xcc79a7, 0xe69f00, 0x56b4e9};
 
 /// Returns a drawing of the ink with every piece, its number and its direction of writing; a colour for each stroke,
 /// and below the order as `parse_order` reads it. SVG.

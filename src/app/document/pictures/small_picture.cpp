@@ -29,8 +29,8 @@ SmallPicture small_picture(const io::Image8& p, int most) {
     return out;
 }
 
-unsigned upload(const SmallPicture& picture) {
-    unsigned texture = 0;
+void upload(unsigned& texture, const SmallPicture& picture) {
+    release(texture);
     glGenTextures(1, &texture);
     glBindTexture(GL_TEXTURE_2D, texture);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -40,7 +40,11 @@ unsigned upload(const SmallPicture& picture) {
     glGenerateMipmap(GL_TEXTURE_2D);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    return texture;
+}
+
+void release(unsigned& texture) {
+    if (texture) glDeleteTextures(1, &texture);
+    texture = 0;
 }
 
 }  // namespace tuft::app

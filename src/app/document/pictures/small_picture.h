@@ -18,7 +18,9 @@ struct SmallPicture {
 /// Returns the means of whole squares of pixels, over white, at most `most` pixels along a side. Any thread.
 SmallPicture small_picture(const io::Image8& picture, int most);
 
-/// Returns a new texture of the picture, with its mip levels.
-unsigned upload(const SmallPicture& picture);
+/// Makes the texture of the picture, with its mip levels, in place of the one of that OpenGL name; 0: none yet.
+void upload(unsigned& texture, const SmallPicture& picture);
+/// Frees a texture that there is, and sets its name to 0.
+void release(unsigned& texture);
 
 }  // namespace tuft::app

@@ -1,12 +1,9 @@
 #include "app/document/pictures/tried_strokes.h"
 
-#include <epoxy/gl.h>
-
 #include <chrono>
 #include <exception>
 
 #include "brush/preset/preset.h"
-#include "pictures/tried_stroke.h"
 
 namespace tuft::app {
 namespace {
@@ -21,19 +18,15 @@ TriedStrokes::~TriedStrokes() {
     stop_ = true;  // the future waits for its thread
 }
 
-unsigned TriedStrokes::texture(const std::string& brush) {
-    const auto [at, is_new] = pictures_.try_emplace(brush);
-    Picture& p = at->second;
-    if (is_new) wanted_.push_back(brush);
-    if (p.texture || p.rgb.empty()) return p.texture;
-    glGenTextures(1, &p.texture);
-    glBindTexture(GL_TEXTURE_2D, p.texture);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, TriedStroke::kWidth, TriedStroke::kHeight, 0, GL_RGB, GL_UNSIGNED_BYTE,
-                 p.rgb.data());
-    glGenerateMipmap(GL_TEXTURE_2D);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+unsigned TriedStrokes::texture(const std::string& brush, std::uint64_t reading) {
+    Picture& p = pictures_[brush];
+    if (p.reading != reading) {
+        app::release(p.texture);
+        p.picture.rgb.clear();
+        p.reading = reading;
+        wanted_.push_back({brush, reading});
+    }
+    if (!p.texture && !p.picture.rgb.empty()) upload(p.texture, p.picture);
     return p.texture;
 }
 
@@ -43,27 +36,24 @@ void TriedStrokes::update(bool may_paint) {
         if (painting_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
         Painted painted = painting_.get();
         if (painted.stopped)
-            wanted_.push_front(painted.brush);
-        else
-            pictures_[painted.brush].rgb = std::move(painted.rgb);
+            wanted_.push_front(std::move(painted.wish));
+        else if (Picture& p = pictures_[painted.wish.brush]; p.reading == painted.wish.reading)
+            p.picture.rgb = std::move(painted.rgb);
     }
     if (!may_paint || wanted_.empty()) return;
     stop_ = false;
-    painting_ = std::async(std::launch::async, [this, brush = wanted_.front()] { return paint(brush); });
+    painting_ = std::async(std::launch::async, [this, wish = wanted_.front()] { return paint(wish); });
     wanted_.pop_front();
 }
 
 void TriedStrokes::release() {
-    for (auto& [brush, p] : pictures_) {
-        if (p.texture) glDeleteTextures(1, &p.texture);
-        p.texture = 0;
-    }
+    for (auto& [brush, p] : pictures_) app::release(p.texture);
 }
 
-TriedStrokes::Painted TriedStrokes::paint(const std::string& brush) const {
-    Painted out{.brush = brush, .rgb = {}};
+TriedStrokes::Painted TriedStrokes::paint(Wish wish) const {
+    Painted out{.wish = std::move(wish), .rgb = {}};
     try {
-        const brush::Preset preset = brush::load_preset(brush);
+        const brush::Preset preset = brush::load_preset(out.wish.brush);
         CacheKey key("tried stroke 1");
         key.add_text(brush::preset_toml(preset));
         const auto take = [&](CacheReader& in) {
@@ -77,7 +67,7 @@ TriedStrokes::Painted TriedStrokes::paint(const std::string& brush) const {
     } catch (const Cancelled&) {
         out.stopped = true;
     } catch (const std::exception&) {
-        // A brush whose file is gone is shown by its name.
+        // A brush whose file is away is shown by its name.
     }
     return out;
 }

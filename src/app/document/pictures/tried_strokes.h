@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "app/document/pictures/small_picture.h"
 #include "core/files/disk_cache.h"
+#include "pictures/tried_stroke.h"
 
 /// \file
 /// Pictures of a stroke of each brush (pictures/tried_stroke.h). Window thread; strokes are painted on another one.
@@ -21,8 +23,9 @@ class TriedStrokes {
     TriedStrokes() : cache_(cache_folder("brushes")) {}
     ~TriedStrokes();
 
-    /// Returns the texture of the brush's picture; 0 while there is none.
-    unsigned texture(const std::string& brush);
+    /// Returns the texture of the brush's picture; 0 while there is none. `reading`: another number where the brush may
+    /// be another one than at the last call; the picture is then painted anew.
+    unsigned texture(const std::string& brush, std::uint64_t reading);
     /// Takes what was painted, and begins the next one where `may_paint`; else stops the one in work, which is begun
     /// again later. Returns at once.
     void update(bool may_paint);
@@ -32,19 +35,26 @@ class TriedStrokes {
 
   private:
     struct Picture {
-        std::vector<std::uint8_t> rgb;  ///< empty: not painted yet, or the preset cannot be read
+        SmallPicture picture{///< empty: not painted yet, or the preset cannot be read
+                             .width = pictures::TriedStroke::kWidth,
+                             .height = pictures::TriedStroke::kHeight};
         unsigned texture = 0;
+        std::uint64_t reading = 0;
+    };
+    struct Wish {
+        std::string brush;
+        std::uint64_t reading = 0;
     };
     struct Painted {
-        std::string brush;
+        Wish wish;
         std::vector<std::uint8_t> rgb;
         bool stopped = false;
     };
-    Painted paint(const std::string& brush) const;
+    Painted paint(Wish wish) const;
 
     DiskCache cache_;
     std::map<std::string, Picture> pictures_;  ///< of all that were asked for
-    std::deque<std::string> wanted_;
+    std::deque<Wish> wanted_;
     std::atomic<bool> stop_{false};
     std::future<Painted> painting_;
 };

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "brush/preset/preset.h"
+#include "core/message.h"
+
+/// \file
+/// The brushes that one can choose, read once, in groups as a shop hangs them. Window thread.
+namespace tuft::app {
+
+/// Returns true for a brush of a file of the user: a name with a folder, or ending in .toml.
+bool is_own_brush(const std::string& name);
+
+/// Returns the family of a brush: "own" for a file; "goat", "mixed" or "wolf" for pointed brushes named after their
+/// hair; by its build "sponge" for foam, "flat" for a broad side, "liner" for hair of at least six thicknesses, else
+/// "round".
+std::string family_of(const std::string& name, const brush::Preset& preset);
+
+/// Brushes of one make.
+struct BrushFamily {
+    std::string title;               ///< English, has an entry in the catalogues
+    std::vector<std::string> names;  ///< from short to long hair
+};
+
+/// A brush as it hangs there.
+struct ShelfBrush {
+    brush::Preset preset;       ///< as it was read last; of one that was never read that of no name
+    Message fault;              ///< why it cannot be taken now, such as a file that is away; empty: it can
+    std::uint64_t reading = 0;  ///< another one whenever its file was read
+    std::optional<std::filesystem::file_time_type> written;  ///< when its file was; nothing: there is none
+};
+
+/// Reads each brush when it is first asked for, and files of the user again when they change, go or come back.
+class BrushShelf {
+  public:
+    /// Returns a brush by the name of its own size.
+    const ShelfBrush& at(const std::string& name);
+    /// Reads the brush now.
+    const ShelfBrush& read(const std::string& name);
+    /// Reads the files again that are not as they were.
+    void look();
+    /// Looks, at most once a second.
+    void watch();
+    /// Returns the families of these brushes, each once: goat, mixed, wolf, flat, liner, round, sponge, own. Holds
+    /// until the next call.
+    const std::vector<BrushFamily>& families(const std::vector<std::string>& names);
+
+  private:
+    std::map<std::string, ShelfBrush> brushes_;
+    std::uint64_t readings_ = 0;
+    std::chrono::steady_clock::time_point looked_;
+    std::vector<BrushFamily> families_;
+    std::vector<std::string> names_;  // that `families_` are of
+    std::uint64_t families_at_ = 0;   // readings
+};
+
+}  // namespace tuft::app
