@@ -20,29 +20,31 @@ namespace {
 constexpr const char* kInks[] = {"carbon", "cinnabar", "water", "titanium-white-paste"};
 constexpr const char* kBrushes[] = {"wolf-small",  "goat-small*0.3", "mixed-small*0.5", "wolf-medium*0.2",
                                     "flat-12*0.3", "filbert-12*0.3", "sword-8*0.3",     "robot-2020"};
-constexpr int kOwnShape = 250;
 // Sizes of what a hand does, metres: a stroke takes a step for each texel of its path.
 constexpr double kShort = 1e-3;
 constexpr double kReaches[] = {2.5e-4, 2.5e-4, 2.5e-4, 1e-3, 4e-3, 1.5e-2};
 constexpr double kSpacings[] = {1, 4, 16, 1000};  // texels
 
-/// What takes as long as hundreds of other inputs: a document measures a brush's tip lag and table anew. Which inputs
-/// do it is said by a hash of all their bytes, so changes of one that did it rarely do it too.
+/// What takes as long as tens or hundreds of other inputs: a document measures a brush's tip lag and table anew, and a
+/// model is made. Which inputs do it is said by a hash of all their bytes, so changes of one that did it rarely do it
+/// too.
 struct Costly {
     bool measured = false;  ///< tip lag, tables
     bool long_path = false;
-    bool twice = false;  ///< a replay must give the same bits
+    bool twice = false;      ///< a replay must give the same bits
+    bool own_model = false;  ///< one that no other input has
 };
 Costly costly(std::span<const std::uint8_t> input) {
     std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
     for (const std::uint8_t byte : input) hash = (hash ^ byte) * 0x100000001b3u;
     hash ^= hash >> 32;
-    return {.measured = hash % 256 == 1, .long_path = hash % 16 == 2, .twice = hash % 8 == 3};
+    return {
+        .measured = hash % 256 == 1, .long_path = hash % 16 == 2, .twice = hash % 8 == 3, .own_model = hash % 256 == 4};
 }
 
 /// A tile, a roof, a block or two tiles with a gap, some 20 mm large, each corner moved by up to half of it: in one of
-/// eight ways, rarely in a way of its own. A model takes longer to make than a stroke.
-mesh::PolygonSoup tiny_mesh(Bytes& bytes) {
+/// eight ways, with `own` in a way of its own.
+mesh::PolygonSoup tiny_mesh(Bytes& bytes, bool own) {
     static const std::vector<Vec3> kCorners{{-10, -10, 0}, {10, -10, 0}, {10, 10, 0}, {-10, 10, 0},
                                             {-10, -10, 8}, {10, -10, 8}, {10, 10, 8}, {-10, 10, 8}};
     static const std::vector<std::vector<std::uint32_t>> kFaces[] = {
@@ -57,7 +59,7 @@ mesh::PolygonSoup tiny_mesh(Bytes& bytes) {
         Vec3 p = corner;
         if (reach > 0)
             for (int k = 0; k < 3; ++k)
-                p[k] += (reach == 1 ? 0.5 : 10) * (variant < kOwnShape ? 2 * known.uniform() - 1 : bytes.real());
+                p[k] += (reach == 1 ? 0.5 : 10) * (own ? bytes.real() : 2 * known.uniform() - 1);
         soup.points.push_back(p);
     }
     soup.polygon_start.push_back(0);
@@ -68,22 +70,18 @@ mesh::PolygonSoup tiny_mesh(Bytes& bytes) {
     return soup;
 }
 
-/// Models that were made before, by what they are made of.
+/// Each model is made once, but those of inputs with one of their own. There are at most 136: two sizes of four shapes,
+/// as they are or moved in 16 ways.
 class Models {
   public:
-    const stroke::Model& get(Bytes& bytes) {
-        stroke::ModelOptions options;
-        options.unwrap.size = 48 + 16 * static_cast<std::uint32_t>(bytes.below(2));
-        options.unwrap.cutting = atlas::Cutting::never;
-        mesh::PolygonSoup soup = tiny_mesh(bytes);
-        std::unique_ptr<const stroke::Model>& model = made_[key_of(options.unwrap.size, soup)];
-        if (!model) model = std::make_unique<const stroke::Model>(stroke::prepare_model(std::move(soup), options));
-        return *model;
-    }
-    void drop_some() {
-        constexpr std::size_t kMost = 300;
-        std::erase_if(made_, [](const auto& one) { return !one.second; });  // refused
-        if (made_.size() > kMost) made_.clear();
+    /// Returns null for a mesh that is refused. The model holds until the next call.
+    const stroke::Model* get(Bytes& bytes, bool own) {
+        const std::uint32_t size = 48 + 16 * static_cast<std::uint32_t>(bytes.below(2));
+        mesh::PolygonSoup soup = tiny_mesh(bytes, own);
+        if (own) return (own_ = make(size, std::move(soup))).get();
+        const auto [place, is_new] = made_.try_emplace(key_of(size, soup));
+        if (is_new) place->second = make(size, std::move(soup));
+        return place->second.get();
     }
 
   private:
@@ -94,8 +92,18 @@ class Models {
         key.insert(key.end(), soup.corners.begin(), soup.corners.end());
         return key;
     }
+    static std::unique_ptr<const stroke::Model> make(std::uint32_t size, mesh::PolygonSoup soup) {
+        stroke::ModelOptions options;
+        options.unwrap.size = size;
+        options.unwrap.cutting = atlas::Cutting::never;
+        std::unique_ptr<const stroke::Model> model;
+        refusing(
+            [&] { model = std::make_unique<const stroke::Model>(stroke::prepare_model(std::move(soup), options)); });
+        return model;
+    }
 
     std::map<Key, std::unique_ptr<const stroke::Model>> made_;
+    std::unique_ptr<const stroke::Model> own_;
 };
 
 /// Gives a painting its brushes and inks, which are read once: a measured pigment takes longer than a stroke. The
@@ -231,19 +239,19 @@ void check_ink(const ink::Canvas& canvas) {
 
 void run_paint(std::span<const std::uint8_t> input) {
     static Models models;
-    models.drop_some();
     if (thread_count() != 1) set_thread_count(1);  // what is so small is made faster by one
     Bytes bytes(input);
     const Costly how = costly(input);
     bytes.byte();  // of older seeds
     refusing([&] {
-        const stroke::Model& model = models.get(bytes);
-        stroke::Document painting(model);
+        const stroke::Model* model = models.get(bytes, how.own_model);
+        if (!model) return;
+        stroke::Document painting(*model);
         use_presets(painting);
         for (int i = 0; i < 3 && !bytes.empty(); ++i) refusing([&] { painting.paint(entry_of(bytes, how)); });
         check_ink(painting.layers().canvas());
         if (!how.twice) return;
-        stroke::Document again(model);
+        stroke::Document again(*model);
         use_presets(again);
         again.replay(painting.journal().entries());
         promise(again.layers().hash() == painting.layers().hash(), "a replay gives the same bits");

@@ -1,6 +1,7 @@
 #include "brush/tuft/ferrule.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -74,9 +75,11 @@ std::vector<FerruleSpine> ferrule_spines(const Preset& p) {
         return ring;
     }
     const double a = 0.5 * p.width;
-    const auto height = [&](int i) { return mouth_height(p, 2 * (i + 0.5) / kSlices - 1); };
+    std::array<double, kSlices> heights;  // left as right
+    for (int i = 0; 2 * i < kSlices; ++i)
+        heights[i] = heights[kSlices - 1 - i] = mouth_height(p, 2 * (i + 0.5) / kSlices - 1);
     double area = 0;
-    for (int i = 0; i < kSlices; ++i) area += height(i);
+    for (const double height : heights) area += height;
     std::vector<FerruleSpine> out(p.spines);
     double below = 0;
     int slice = 0;
@@ -86,7 +89,7 @@ std::vector<FerruleSpine> ferrule_spines(const Preset& p) {
         double own = 0, moment = 0;
         const double wanted = area * (k + 1) / p.spines;
         for (; slice < kSlices && (below < wanted || k + 1 == p.spines); ++slice) {
-            const double h = height(slice);
+            const double h = heights[slice];
             below += h;
             own += h;
             moment += h * (2 * (slice + 0.5) / kSlices - 1);
