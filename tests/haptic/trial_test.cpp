@@ -218,8 +218,8 @@ TEST(Trial, NoSampleCostsMoreThanAFewHundredEvaluations) {
         }
 }
 
-// Hair at rest keeps its planes: a sample starts where the last one ended and needs one evaluation, or two. Measured 3.7
-// with the landing; 9.8 where the planes of one face of the edge led to the other and back in each sample.
+// Hair at rest keeps its planes: a sample starts where the last one ended and needs one evaluation, or two.
+// Measured 3.7 with the landing; 9.8 where the planes of one face of the edge led to the other and back in each sample.
 TEST(Trial, RestAtAnEdgeTakesFewEvaluations) {
     const TrialModel f = load_trial_model("edge");
     const brush::Tuft tuft = tuft_of("wolf-medium");
