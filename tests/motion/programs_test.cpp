@@ -95,6 +95,16 @@ TEST(Programs, KrlHoldsEulerAnglesAboutZYX) {
     EXPECT_LT(glm::length(q * Vec3(1, 0, 0) - Vec3(1, 0, 0)), 1e-5);
 }
 
+// Before INITMOV a controller has no speeds of axes and of turning, and INITMOV resets the tool.
+TEST(Programs, KrlInitialisesMotionBeforeItSetsTheTool) {
+    const std::string text = krl_text(program(0.3));
+    const std::size_t init = text.find("\n  BAS (#INITMOV, 0)\n");
+    ASSERT_NE(init, std::string::npos);
+    EXPECT_LT(text.find("\nDEF "), init);
+    EXPECT_LT(init, text.find("$TOOL"));
+    EXPECT_LT(text.find("$TOOL"), text.find("PTP"));
+}
+
 TEST(Programs, GCodeIsForUprightBrushesOnly) {
     const auto lines = numbers_in(gcode_text(program(0)),
                                   std::regex("G1 X" + kNumber + " Y" + kNumber + " Z" + kNumber + " F" + kNumber));

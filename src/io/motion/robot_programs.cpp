@@ -126,8 +126,10 @@ std::string rapid_text(const MotionProgram& program) {
 }
 
 std::string krl_text(const MotionProgram& program) {
+    // INITMOV gives the speeds of axes and of turning, which a controller does not start with, and resets $TOOL.
     std::string text = fmt::format(
-        "&ACCESS RVP\nDEF {0}( )\n  $TOOL = {1}\n  $BASE = $NULLFRAME\n  $ACC.CP = {2:.4f}\n  $APO.CDIS = 0.1\n",
+        "&ACCESS RVP\nDEF {0}( )\n  BAS (#INITMOV, 0)\n  $TOOL = {1}\n  $BASE = $NULLFRAME\n  $ACC.CP = {2:.4f}\n  "
+        "$APO.CDIS = 0.1\n",
         program.title, krl_pose(program.tool), program.limits.acceleration);
     for (const Move& move : program.trajectory.moves) {
         text += "  ; " + comment_of(program, move) + "\n";
