@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 #include "core/error.h"
@@ -353,38 +352,6 @@ PictureInk picture_ink(const io::Image8& picture, const std::string& source, dou
 
 Cells ink_of(const io::Image8& picture, const std::string& source, double threshold) {
     return picture_ink(picture, source, threshold).cells;
-}
-
-std::vector<Ring> boundaries(const Cells& c, int passes) {
-    using Corner = std::pair<int, int>;
-    std::map<Corner, std::vector<Corner>> next;
-    for (int j = 0; j < c.height; ++j)
-        for (int i = 0; i < c.width; ++i) {
-            if (!c.at(i, j)) continue;
-            if (!c.at(i, j - 1)) next[{i, j}].push_back({i + 1, j});
-            if (!c.at(i + 1, j)) next[{i + 1, j}].push_back({i + 1, j + 1});
-            if (!c.at(i, j + 1)) next[{i + 1, j + 1}].push_back({i, j + 1});
-            if (!c.at(i - 1, j)) next[{i, j + 1}].push_back({i, j});
-        }
-    std::vector<Ring> rings;
-    while (!next.empty()) {
-        Ring ring;
-        Corner at = next.begin()->first;
-        for (auto found = next.find(at); found != next.end(); found = next.find(at)) {
-            ring.push_back(c.lo + c.cell * Vec2(at.first, at.second));
-            at = found->second.back();
-            found->second.pop_back();
-            if (found->second.empty()) next.erase(found);
-        }
-        for (int pass = 0; pass < passes; ++pass) {
-            const Ring old = ring;
-            const std::size_t n = ring.size();
-            for (std::size_t i = 0; i < n; ++i)
-                ring[i] = 0.25 * old[(i + n - 1) % n] + 0.5 * old[i] + 0.25 * old[(i + 1) % n];
-        }
-        rings.push_back(std::move(ring));
-    }
-    return rings;
 }
 
 }  // namespace tuft::writer

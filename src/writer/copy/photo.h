@@ -39,8 +39,4 @@ Cells ink_of(const io::Image8& picture, const std::string& source, double thresh
 
 inline constexpr double kCopiedPart = 0.84;  ///< of the square's side: the longer side of the box round the ink
 
-/// Returns the boundaries of cells as closed lines through corners of cells, the area on the left, smoothed over
-/// `passes` neighbours by (¼ ½ ¼).
-std::vector<Ring> boundaries(const Cells& cells, int passes);
-
 }  // namespace tuft::writer

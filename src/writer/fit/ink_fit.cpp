@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/system/interrupt.h"
+#include "writer/fit/knuckle_fit.h"
 
 namespace tuft::writer {
 namespace {
@@ -22,8 +23,6 @@ constexpr std::size_t kCornerReach = 3;  // stations
 constexpr double kNeedle = 24;           // units about an end in which its ink must not reach further than wanted
 constexpr double kNeedleBack = 0.6;      // part of that taken back at once
 constexpr float kDeepest = 24;           // units of depth that count
-constexpr double kRim = 4;               // units of depth at which a wrong cell counts once
-constexpr double kTaken = 0.5;           // coverage from which a cell is ink
 
 struct Errors {
     std::vector<double> left, right, kick;  ///< units, [stations]
@@ -265,7 +264,7 @@ FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& ta
         best = fit_from(*first, best.stations, options.fine_tries, options.fine_step, manner);
         best.tries += before;
     }
-    return best;
+    return take_off_knuckles(std::move(best), target, depths, hand, pace, options);
 }
 
 }  // namespace tuft::writer

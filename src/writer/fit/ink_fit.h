@@ -19,13 +19,17 @@ struct FitTarget {
 
 /// Options of `fit_stations`.
 struct FitOptions {
-    int tries = 8;           ///< drawings on the plane at most
-    double step = 5;         ///< units between poses
-    int fine_tries = 3;      ///< drawings after those, from the best of them on
-    double fine_step = 1.5;  ///< units; the ink of a tuft depends on the step, by .005 of the overlap from 5 to 1
-    double weak = 0.955;     ///< overlap below which another manner and another begin are tried
-    int idle = 4;            ///< tries without a gain after which it stops
+    int tries = 5;         ///< drawings on the plane at most
+    double step = 5;       ///< units between poses
+    int fine_tries = 1;    ///< drawings after those, from the best of them on
+    double fine_step = 2;  ///< units; the ink of a tuft depends on the step, by .005 of the overlap from 5 to 1
+    double weak = 0.955;   ///< overlap below which another manner and another begin are tried
+    int idle = 4;          ///< tries without a gain after which it stops
+    int polish = 20;       ///< drawings at most, after those, that take knuckles off (knuckle_fit.h)
 };
+
+inline constexpr double kTaken = 0.5;  ///< coverage from which a cell is ink
+inline constexpr double kRim = 4;      ///< units of depth at which a wrong cell counts once
 
 /// Result of `fit_stations`.
 struct FitResult {

@@ -38,4 +38,8 @@ void fill(Cells& cells, std::span<const Ring> rings);
 /// Exact Euclidean distance [Felzenszwalb2012], O(cells).
 std::vector<float> clearances(const Cells& cells);
 
+/// Returns the boundaries of cells as closed lines through corners of cells, the area on the left, smoothed over
+/// `passes` neighbours by (¼ ½ ¼).
+std::vector<Ring> boundaries(const Cells& cells, int passes);
+
 }  // namespace tuft::writer

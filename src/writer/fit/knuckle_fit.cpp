@@ -1,0 +1,157 @@
+#include "writer/fit/knuckle_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/system/interrupt.h"
+#include "writer/gesture/knuckles.h"
+
+namespace tuft::writer {
+namespace {
+
+constexpr double kPrice = 0.02;  // of the score, for a knuckle of twice the least curvature
+constexpr double kSoft = 1.5;    // stations of the Gaussian over which a place is changed
+constexpr double kHead = 45;     // units from the first station within which a knuckle is the head's
+constexpr int kRounds = 3;       // over the knuckles of a stroke
+constexpr double kLeastGain = 5e-4;
+
+/// A path as it is drawn.
+struct Drawing {
+    std::vector<Station> stations;
+    double score = 0, iou = 0, value = -1e9;
+    std::vector<EdgeTurn> knuckles;  // sharpest first
+};
+
+class KnuckleFit {
+  public:
+    KnuckleFit(const FitTarget& target, const std::vector<float>& depths, const BrushHand& hand, const Pace& pace,
+               const FitOptions& options)
+        : target_(target),
+          depths_(depths),
+          hand_(hand),
+          pace_(pace),
+          options_(options),
+          turns_(edge_turns(target.wanted, coverage_of(target.wanted), 0.5 * kKnuckle)) {}
+
+    Drawing draw(std::vector<Station> stations) {
+        check_interrupt();
+        ++draws_;
+        Drawing out{.stations = std::move(stations)};
+        const Cells& wanted = target_.wanted;
+        const stroke::PlaneInk ink = draw_on_plane(out.stations, hand_, pace_, options_.fine_step, wanted.cell);
+        std::vector<float> coverage(wanted.inside.size());
+        double both = 0, either = 0, deep = 0;
+        for (int j = 0; j < wanted.height; ++j)
+            for (int i = 0; i < wanted.width; ++i) {
+                const std::size_t at = std::size_t(j) * wanted.width + i;
+                coverage[at] = static_cast<float>(ink.at(wanted.centre(i, j) * hand_.unit));
+                const bool there = coverage[at] > kTaken;
+                const bool is_wanted = wanted.inside[at] != 0;
+                if (is_wanted == there) {
+                    both += there, either += there;
+                    continue;
+                }
+                const double weight = weight_at(at);
+                either += weight;
+                deep += weight * static_cast<double>(depths_[at]) / kRim;
+            }
+        out.iou = either > 0 ? both / either : 0;
+        out.score = both > 0 ? both / (both + deep) : 0;
+        out.value = out.score;
+        for (const EdgeTurn& turn : knuckles_of(wanted, coverage, turns_)) {
+            if (is_under_another(turn.at)) continue;
+            out.value -= kPrice * std::min(1.0, turn.curvature / (2 * kKnuckle));
+            out.knuckles.push_back(turn);
+        }
+        std::stable_sort(out.knuckles.begin(), out.knuckles.end(),
+                         [](const EdgeTurn& a, const EdgeTurn& b) { return a.curvature > b.curvature; });
+        return out;
+    }
+
+    bool may_draw() const { return draws_ < options_.polish; }
+    int draws() const { return draws_; }
+
+  private:
+    double weight_at(std::size_t cell) const {
+        return target_.weights.empty() ? 1 : static_cast<double>(target_.weights[cell]);
+    }
+    bool is_under_another(const Vec2& p) const {
+        const Cells& c = target_.wanted;
+        const Vec2 cell = glm::floor((p - c.lo) / c.cell);
+        const auto i = static_cast<int>(cell.x), j = static_cast<int>(cell.y);
+        if (i < 0 || j < 0 || i >= c.width || j >= c.height) return false;
+        return weight_at(std::size_t(j) * c.width + static_cast<std::size_t>(i)) < 1;
+    }
+
+    const FitTarget& target_;
+    const std::vector<float>& depths_;
+    const BrushHand& hand_;
+    const Pace& pace_;
+    const FitOptions& options_;
+    std::vector<EdgeTurn> turns_;
+    int draws_ = 0;
+};
+
+/// Changes of a path near a station: a shift, a factor of the half width.
+struct Change {
+    Vec2 shift{0};
+    double factor = 1;
+};
+
+std::vector<Station> changed(std::vector<Station> s, std::size_t at, const Change& change) {
+    for (std::size_t i = 0; i < s.size(); ++i) {
+        const double z = (static_cast<double>(i) - static_cast<double>(at)) / kSoft, w = std::exp(-0.5 * z * z);
+        if (w < 0.01) continue;
+        s[i].centre += w * change.shift;
+        s[i].half *= 1 + w * (change.factor - 1);
+    }
+    return s;
+}
+
+Vec2 unit_of(const Vec2& v) {
+    const double size = glm::length(v);
+    return size > 1e-9 ? v / size : Vec2(1, 0);
+}
+
+/// Changes that may take a knuckle off.
+std::vector<std::pair<std::size_t, Change>> changes_at(const std::vector<Station>& s, const Vec2& knuckle) {
+    std::size_t near = 0;
+    for (std::size_t i = 0; i < s.size(); ++i)
+        if (glm::distance(s[i].centre, knuckle) < glm::distance(s[near].centre, knuckle)) near = i;
+    const Vec2 out = unit_of(knuckle - s[near].centre);
+    std::vector<std::pair<std::size_t, Change>> all{{near, {-3.0 * out, 1}}, {near, {Vec2(0), 0.88}},
+                                                    {near, {-6.0 * out, 1}}, {near, {Vec2(0), 1.12}},
+                                                    {near, {3.0 * out, 1}},  {near, {3.0 * out, 0.88}}};
+    if (glm::distance(s[0].centre, knuckle) < kHead && s.size() > 4) {
+        const Vec2 on = unit_of(s[2].centre - s[0].centre), left(-on.y, on.x);
+        for (const Vec2& shift : {4.0 * left, -4.0 * left, 4.0 * on, -4.0 * on}) all.push_back({0, {shift, 1}});
+        all.push_back({0, {Vec2(0), 1.3}});
+        all.push_back({0, {Vec2(0), 0.7}});
+    }
+    return all;
+}
+
+}  // namespace
+
+FitResult take_off_knuckles(FitResult fitted, const FitTarget& target, const std::vector<float>& depths,
+                            const BrushHand& hand, const Pace& pace, const FitOptions& options) {
+    if (options.polish <= 0 || fitted.stations.size() < 4) return fitted;
+    KnuckleFit fit(target, depths, hand, pace, options);
+    Drawing best = fit.draw(fitted.stations);
+    for (int round = 0; round < kRounds && !best.knuckles.empty(); ++round) {
+        const double before = best.value;
+        const std::vector<EdgeTurn> knuckles = best.knuckles;
+        for (const EdgeTurn& knuckle : knuckles)
+            for (const auto& [at, change] : changes_at(best.stations, knuckle.at)) {
+                if (!fit.may_draw()) break;
+                Drawing next = fit.draw(changed(best.stations, at, change));
+                if (next.value > best.value) best = std::move(next);
+            }
+        if (best.value < before + kLeastGain) break;
+    }
+    if (best.value > -1e8) fitted.stations = best.stations, fitted.iou = best.iou, fitted.score = best.score;
+    fitted.tries += fit.draws();
+    return fitted;
+}
+
+}  // namespace tuft::writer

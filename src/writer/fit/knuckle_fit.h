@@ -1,0 +1,20 @@
+#pragma once
+
+#include "writer/fit/ink_fit.h"
+
+/// \file
+/// Takes knuckles off a fitted stroke. Called by `fit_stations`.
+namespace tuft::writer {
+
+/// Returns the stations with the fewest knuckles among those of `fitted` with heads, corners and tails moved where a
+/// knuckle is. Near each, the path moves by 3 and 6 units away from it, the half width changes by an eighth, a head
+/// begins sooner, later or to the side. What is kept raises
+///
+///     score − 0.02 Σ severity,  severity = min(1, curvature / (2 · kKnuckle)) for each knuckle,
+///
+/// `score` as in `fit_stations`. Knuckles under other strokes do not count. At most `options.polish` drawings in steps
+/// of `options.fine_step`; one where the stroke has no knuckle. Deterministic.
+FitResult take_off_knuckles(FitResult fitted, const FitTarget& target, const std::vector<float>& depths,
+                            const BrushHand& hand, const Pace& pace, const FitOptions& options);
+
+}  // namespace tuft::writer
