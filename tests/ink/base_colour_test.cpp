@@ -11,11 +11,10 @@
 #include "ink/canvas/canvas.h"
 #include "ink/colour/presets.h"
 #include "ink/composite/composite.h"
+#include "texels.h"
 
 namespace tuft::ink {
 namespace {
-
-constexpr int kN = atlas::kTileTexels;
 
 /// A square of two triangles that fills the page, with UVs of the file from `lo` to `hi`.
 struct Square {

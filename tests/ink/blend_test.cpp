@@ -4,11 +4,10 @@
 
 #include "ink/composite/composite.h"
 #include "ink/spectra/kubelka_munk.h"
+#include "texels.h"
 
 namespace tuft::ink {
 namespace {
-
-constexpr int kN = atlas::kTileTexels;
 
 /// A layer with one film of some pigments on one tile, amounts growing over the texels.
 Canvas layer_of(const std::vector<std::string>& pigments, float most) {

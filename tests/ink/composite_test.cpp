@@ -10,11 +10,10 @@
 #include "core/system/parallel.h"
 #include "ink/spectra/kubelka_munk.h"
 #include "mesh/repair/repair.h"
+#include "texels.h"
 
 namespace tuft::ink {
 namespace {
-
-constexpr int kN = atlas::kTileTexels;
 
 /// A page of `size` texels with a disc-shaped chart in its middle.
 atlas::TexelMap disc_map(std::uint32_t size, double radius) {

@@ -5,11 +5,11 @@
 #include "core/random.h"
 #include "core/system/parallel.h"
 #include "ink/composite/composite.h"
+#include "texels.h"
 
 namespace tuft::ink {
 namespace {
 
-constexpr int kN = atlas::kTileTexels;
 constexpr std::array<const char*, 4> kInks{"carbon", "cinnabar", "gamboge", "titanium-white"};
 
 Canvas canvas_of(std::uint32_t slots) {

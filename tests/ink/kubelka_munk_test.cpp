@@ -35,7 +35,7 @@ TEST(KubelkaMunk, MatchesEveryRowOfTheReferenceTable) {
     ASSERT_EQ(rows.size(), 432u);
     for (const auto& row : rows) {
         const double k = row[0], s = row[1], x = row[2], rg = row[3];
-        SCOPED_TRACE(testing::Message() << "K=" << k << " S=" << s << " X=" << x << " Rg=" << rg);
+        SCOPED_TRACE(::testing::Message() << "K=" << k << " S=" << s << " X=" << x << " Rg=" << rg);
         // The table is good to 2e-12 absolute and has 15 digits.
         const double eps = 3e-12;
         const Layer one = layer(k, s, x);

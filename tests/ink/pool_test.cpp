@@ -8,12 +8,12 @@
 #include "../atlas/analytic_surfaces.h"
 #include "core/system/parallel.h"
 #include "ink/film/film.h"
+#include "texels.h"
 
 // Thin ink over thick dry paint.
 namespace tuft::ink {
 namespace {
 
-constexpr int kN = atlas::kTileTexels;
 constexpr double kSideLength = 8e-3, kWave = 1e-3;  // metres
 
 /// A sheet of 8 mm in n × n charts, 20 texels a millimetre, with dry furrows `deep` micrometres deep across x, and 2

@@ -7,11 +7,10 @@
 #include "core/random.h"
 #include "ink/composite/composite.h"
 #include "ink/exchange/deposit.h"
+#include "texels.h"
 
 namespace tuft::ink {
 namespace {
-
-constexpr int kN = atlas::kTileTexels;
 
 Ink recipe(const std::string& name, std::vector<std::pair<const char*, double>> parts) {
     Ink ink;

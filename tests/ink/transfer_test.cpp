@@ -4,11 +4,11 @@
 
 #include "core/random.h"
 #include "ink/film/tile/paste.h"
+#include "texels.h"
 
 namespace tuft::ink {
 namespace {
 
-constexpr int kN = atlas::kTileTexels;
 constexpr float kArea = 1e-8f;
 
 /// A surface of one tile, a tuft with its surface liquid, and contact with all of the tile.

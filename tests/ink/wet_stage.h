@@ -4,12 +4,12 @@
 
 #include "../atlas/analytic_surfaces.h"
 #include "ink/film/film.h"
+#include "texels.h"
 
 /// What the tests of the wet film paint on.
 namespace tuft::ink {
 
 using atlas::TexelMap;
-inline constexpr int kN = atlas::kTileTexels;
 
 /// Keeps map and film together: the film looks at the map.
 struct Wet {
