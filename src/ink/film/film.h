@@ -81,9 +81,8 @@ class WetFilm {
 
     /// Called for a slot before anything in it changes, in the order of slots within a step.
     using BeforeFn = std::function<void(std::uint32_t slot)>;
+    using FreeFn = FreeTexelsFn;
 
-    /// Returns the free fraction of a texel, 0–255, from the mask.
-    using FreeFn = std::function<std::uint8_t(std::uint32_t slot, int texel)>;
     /// Sets a stencil: from now on no liquid crosses the edge of texels that are not free at all. Flow is reduced
     /// where a texel is partly free. Empty: all texels are free. Cost: the metric of wet tiles is computed again.
     void keep_within(FreeFn free);

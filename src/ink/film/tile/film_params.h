@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
+
 #include "core/geometry/types.h"
 #include "ink/canvas/canvas.h"
 
@@ -9,6 +12,9 @@ namespace tuft::ink {
 
 /// ξ: where liquid is supplied, a front in the pores is at ξ √(D₀ t). From (S² S′)′ = −½ ξ S′, S(0) = 1.
 inline constexpr double kFrontConstant = 1.0903204;
+
+/// Returns the free fraction of a texel, 0–255, from the mask.
+using FreeTexelsFn = std::function<std::uint8_t(std::uint32_t slot, int texel)>;
 
 /// How liquid behaves on a surface. Amounts of liquid in film units (10 µm).
 struct FilmParams {

@@ -73,7 +73,7 @@ struct alignas(64) Geometry {
 struct FlowMedium {
     double unevenness = 0;  ///< rms of the logarithm of the mobility, see `EaseOfFlow`
     double fibrous = 0;     ///< 0–1: part of its square that fibres have, clouds the rest
-    WetFilm::FreeFn free;   ///< fraction of a texel that the stencils leave free; empty: all
+    FreeTexelsFn free;      ///< fraction of a texel that the stencils leave free; empty: all
 };
 /// Returns the fraction of the flow that passes between two texels of the given free fractions; 0 over a stencil
 /// edge.
