@@ -36,6 +36,7 @@ ink/canvas
 ink/composite ink/exchange ink/texels
 ink/film/tile
 ink/film
+decal/panels
 decal
 stroke/journal/entry
 stroke/journal

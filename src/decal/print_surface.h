@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "decal/panels.h"
+#include "decal/panels/panels.h"
 
 /// \file
 /// A panel together with the strip of surface beyond its seams that overlaps and bleeds are printed from, and where its

@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "decal/panels.h"
+#include "decal/panels/panels.h"
 #include "surfaces.h"
 
 namespace tuft::decal {

@@ -1,4 +1,4 @@
-#include "decal/lay_flat.h"
+#include "decal/panels/lay_flat.h"
 
 #include <gtest/gtest.h>
 

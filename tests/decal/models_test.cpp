@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "decal/panels.h"
+#include "decal/panels/panels.h"
 #include "io/model/read_model.h"
 #include "mesh/repair/repair.h"
 #include "paths.h"

@@ -6,7 +6,7 @@
 
 #include "../atlas/test_mesh.h"
 #include "atlas/seams/chart_mesh.h"
-#include "decal/film_mesh.h"
+#include "decal/panels/film_mesh.h"
 
 /// Surfaces with known developments.
 namespace tuft::test {

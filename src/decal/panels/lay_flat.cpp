@@ -1,4 +1,4 @@
-#include "decal/lay_flat.h"
+#include "decal/panels/lay_flat.h"
 
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>

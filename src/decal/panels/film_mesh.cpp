@@ -1,4 +1,4 @@
-#include "decal/film_mesh.h"
+#include "decal/panels/film_mesh.h"
 
 #include <algorithm>
 #include <cmath>

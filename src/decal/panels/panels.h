@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/system/progress.h"
-#include "decal/film_mesh.h"
-#include "decal/lay_flat.h"
+#include "decal/panels/film_mesh.h"
+#include "decal/panels/lay_flat.h"
 
 /// \file
 /// Cutting of the film into panels that lie flat within the strain limit. Called by sheet.h.

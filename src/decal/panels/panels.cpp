@@ -1,4 +1,4 @@
-#include "decal/panels.h"
+#include "decal/panels/panels.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
