@@ -238,7 +238,8 @@ bool bed_paste(Canvas& canvas, std::uint32_t slot, const Plane& height, std::spa
 
 void deposit_paste(Canvas& canvas, const ContactTile& tile, const PasteParams& params, const NodeMixes& mixes,
                    const Plane& before, const PasteExchange& exchange) {
-    const auto& [slot, coverage, area, ds] = tile.stamp;
+    const auto& [covered, ds] = tile.stamp;
+    const auto& [slot, coverage, area] = covered;
     const HatBasis& hats = tile.hats;
     if (hats.count == 0 || !(ds > 0)) return;
     alignas(64) Texels full, strength{}, up, down, old;
