@@ -51,7 +51,9 @@ TEST(Unrolled, ALevelRowIsStraightRoundACylinderAndAnArcRoundACone) {
             EXPECT_NEAR(std::abs(std::atan2(frames[i].right.y, frames[i].right.x)),
                         std::abs(std::remainder(turned, 2 * M_PI)), 1e-4 * static_cast<double>(i));
         }
-        if (slope == 0) EXPECT_NEAR(frames.back().origin.x, (kCount - 1) * chord, 1e-10);
+        if (slope == 0) {
+            EXPECT_NEAR(frames.back().origin.x, (kCount - 1) * chord, 1e-10);
+        }
     }
 }
 

@@ -153,7 +153,7 @@ TEST_F(BadInput, DiskThatFillsUp) {
         tuft("paint " + sheet() + " --strokes " + good_strokes() + " --atlas-size 256 --project " + path("p.tuft"))
             .status,
         0);
-    for (const std::string out : {path("out.glb"), path("out.3mf"), path("out.obj")})
+    for (const std::string& out : {path("out.glb"), path("out.3mf"), path("out.obj")})
         expect_refused("export " + path("p.tuft") + " -o " + out, 1, out.substr(0, out.rfind('.')),
                        "trap '' XFSZ; ulimit -f 8;");
 }

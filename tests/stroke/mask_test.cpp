@@ -23,19 +23,19 @@ const Model& model() {
 const Model& ball() {
     static const Model m = [] {
         mesh::PolygonSoup soup;
-        constexpr std::uint32_t kRings = 24, kSides = 48;
+        constexpr std::uint32_t kRings = 24, kAround = 48;
         for (std::uint32_t j = 0; j <= kRings; ++j)
-            for (std::uint32_t i = 0; i < kSides; ++i) {
-                const double a = std::numbers::pi * j / kRings, b = 2 * std::numbers::pi * i / kSides;
+            for (std::uint32_t i = 0; i < kAround; ++i) {
+                const double a = std::numbers::pi * j / kRings, b = 2 * std::numbers::pi * i / kAround;
                 soup.points.push_back(0.02 * Vec3{std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a)});
             }
         soup.polygon_start.push_back(0);
         soup.group_names = {"upper", "lower"};
         for (std::uint32_t j = 0; j < kRings; ++j)
-            for (std::uint32_t i = 0; i < kSides; ++i) {
-                const std::uint32_t k = (i + 1) % kSides;
+            for (std::uint32_t i = 0; i < kAround; ++i) {
+                const std::uint32_t k = (i + 1) % kAround;
                 for (const std::uint32_t corner :
-                     {j * kSides + i, (j + 1) * kSides + i, (j + 1) * kSides + k, j * kSides + k})
+                     {j * kAround + i, (j + 1) * kAround + i, (j + 1) * kAround + k, j * kAround + k})
                     soup.corners.push_back(corner);
                 soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
                 soup.polygon_groups.push_back(j < kRings / 2 ? 0 : 1);

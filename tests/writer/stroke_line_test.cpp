@@ -77,7 +77,9 @@ TEST(Clearances, OfADiscAreTheDistanceToItsEdge) {
     for (int j = 0; j < cells.height; ++j)
         for (int i = 0; i < cells.width; ++i) {
             const double want = 100 - glm::length(cells.centre(i, j));
-            if (want > 2) EXPECT_NEAR(d[std::size_t(j) * cells.width + i], want, 2.1);  // a cell and half its diagonal
+            if (want > 2) {
+                EXPECT_NEAR(d[std::size_t(j) * cells.width + i], want, 2.1);  // a cell and half its diagonal
+            }
         }
 }
 
