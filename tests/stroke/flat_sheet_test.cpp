@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 #include "core/error.h"
 
 /// Flat sheets to measure on.
@@ -37,9 +39,9 @@ TEST(FlatSheet, TexelsLieInTheirPlaces) {
 }
 
 TEST(FlatSheet, ASheetWithoutAreaOrOutsideItsAtlasIsRefused) {
-    EXPECT_THROW(make_flat_sheet({.frame = {}}), Error);
-    EXPECT_THROW(make_flat_sheet({.frame = {}, .high = Vec2(0.1)}), Error) << "51.2 mm of texels";
-    EXPECT_THROW(make_flat_sheet({.frame = {}, .high = Vec2(0.01), .corner = Vec2(1e-3)}), Error);
+    EXPECT_THROW(make_flat_sheet({.frame = {}}), std::invalid_argument);
+    EXPECT_THROW(make_flat_sheet({.frame = {}, .high = Vec2(0.1)}), std::invalid_argument) << "51.2 mm of texels";
+    EXPECT_THROW(make_flat_sheet({.frame = {}, .high = Vec2(0.01), .corner = Vec2(1e-3)}), std::invalid_argument);
 }
 
 }  // namespace

@@ -171,6 +171,7 @@ constexpr double kCareful = 0.006, kOrdinary = 0.03;
 constexpr double kLaid = 0.8;      ///< bend from which the hair lies as it will, radians
 constexpr double kTeleport = 0.5;  ///< lengths; a further jump is no motion to follow
 constexpr int kMaxParts = 8;
+constexpr int kPassesOnTheWay = 2;  ///< over the normal forces; the last part passes on until they settle
 
 }  // namespace
 

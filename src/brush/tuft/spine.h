@@ -37,8 +37,6 @@ rod::Clamp clamp_of(const Preset& preset, const Pose& pose);
 /// Contact law in units of L and B0 of one of `share` equal spines, for a solve over `dt` seconds.
 rod::Law law_of(const Preset& preset, double wetness, double share, double dt);
 
-inline constexpr int kPassesOnTheWay = 2;  ///< over the normal forces; the last part passes on until they settle
-
 /// Number of parts in which a tuft whose tip is bent by `bend` radians follows its ferrule from one pose to another.
 int count_substeps(const Preset& preset, const Pose& from, const Pose& to, double bend);
 /// Pose at t in [0, 1] of the path.

@@ -87,7 +87,7 @@ struct Coupled {
 
     /// Bounds of one solve, and where it starts.
     struct Start {
-        int most_iterations = 0, most_passes = 0;
+        int most_iterations = 0;
         const StepStart* found = nullptr;  ///< null: extrapolated
     };
 
@@ -103,7 +103,6 @@ struct Coupled {
             const std::size_t count = spine.rest_radius.size();
             laws.push_back(law_of(p, tuft.wetness, 1 / spine.share, dt));
             laws.back().max_iterations = std::min(laws.back().max_iterations, start.most_iterations);
-            laws.back().max_passes = std::min(laws.back().max_passes, start.most_passes);
             obstacles.push_back(obstacles_of_wide(p, spine, NodeAxes(spine.memory), part_of(planes, first, count)));
             walls.push_back(flank_walls(p, spine, pose.rotation, part_of(beside, 2 * first, 2 * count), tuft.wetness));
             first += count;
@@ -354,14 +353,15 @@ Followed follow_pose(Tuft& tuft, const Motion& m, Coupled& coupled, StepStart* s
         last.dt = m.dt / parts;
         for (int k = 1; k < parts; ++k) {
             last.to = between(m.from, m.to, static_cast<double>(k) / parts);
-            follow_part(tuft, last, {std::max(30, most / parts), kPassesOnTheWay}, coupled, out);
+            // With all passes: a blade that lands with too little friction between its spines falls to its side.
+            follow_part(tuft, last, {std::max(30, most / parts)}, coupled, out);
             last.from = last.to;
         }
         last.to = m.to;
         if (start) start->in_parts = parts > 1;
         if (start && parts > 1) note_start(tuft, last.from, last.dt, out, *start);
     }
-    follow_part(tuft, last, {most, law.max_passes, start && start->known ? start : nullptr}, coupled, out);
+    follow_part(tuft, last, {most, start && start->known ? start : nullptr}, coupled, out);
     return out;
 }
 

@@ -1,6 +1,6 @@
 #include "stroke/surface/flat_sheet.h"
 
-#include "core/error.h"
+#include <stdexcept>
 
 namespace tuft::stroke {
 
@@ -8,9 +8,9 @@ Model make_flat_sheet(const FlatSheet& sheet) {
     const double side = sheet.texel * sheet.texels;
     const Vec2 size = sheet.high - sheet.low, first = sheet.low - sheet.corner, last = sheet.high - sheet.corner;
     if (!(size.x > 0 && size.y > 0 && sheet.columns > 0 && sheet.rows > 0 && side > 0))
-        throw Error("a flat sheet without area");
+        throw std::invalid_argument("a flat sheet without area");
     if (!(first.x >= 0 && first.y >= 0 && last.x <= side && last.y <= side))
-        throw Error("a flat sheet that reaches out of its atlas");
+        throw std::invalid_argument("a flat sheet that reaches out of its atlas");
     mesh::PolygonSoup soup;
     std::vector<Vec2f> uvs;
     for (int j = 0; j <= sheet.rows; ++j)

@@ -17,8 +17,8 @@ struct FlatSheet {
 };
 
 /// Returns the sheet as a model, its texels stored as floats. Texel (i, j) of the atlas has its centre at `corner` +
-/// (i + ½, j + ½) `texel`. Throws `Error` where the rectangle is empty or reaches out of the atlas. Cost: about 50 ms
-/// at 512².
+/// (i + ½, j + ½) `texel`. Throws std::invalid_argument where the rectangle is empty or reaches out of the atlas. Cost:
+/// about 50 ms at 512².
 Model make_flat_sheet(const FlatSheet& sheet);
 
 }  // namespace tuft::stroke
