@@ -72,12 +72,13 @@ TEST(Sampling, SobolPointsFillEveryElementaryInterval) {
 
 TEST(Material, BilinearLookupIsExactOnLinearMaps) {
     const mesh::TriangleMesh m = make_sphere(8);
-    constexpr std::uint32_t kSize = 64;
-    std::vector<Vec3f> map(kSize * kSize);
-    for (std::uint32_t y = 0; y < kSize; ++y)
-        for (std::uint32_t x = 0; x < kSize; ++x) map[y * kSize + x] = {(x + 0.5f) / kSize, (y + 0.5f) / kSize, 0.25f};
+    constexpr std::uint32_t kTexelsAcross = 64;
+    std::vector<Vec3f> map(kTexelsAcross * kTexelsAcross);
+    for (std::uint32_t y = 0; y < kTexelsAcross; ++y)
+        for (std::uint32_t x = 0; x < kTexelsAcross; ++x)
+            map[y * kTexelsAcross + x] = {(x + 0.5f) / kTexelsAcross, (y + 0.5f) / kTexelsAcross, 0.25f};
     Appearance a;
-    a.maps = {.size = kSize, .corner_uvs = m.corner_uvs, .base_colour = map};
+    a.maps = {.size = kTexelsAcross, .corner_uvs = m.corner_uvs, .base_colour = map};
     const MaterialReader reader(m, a);
     for (std::uint32_t t = 20; t < 60; ++t) {
         const float b1 = 0.3f, b2 = 0.4f;
@@ -98,12 +99,13 @@ TEST(Material, ReliefGivesTheSlopeOfARamp) {
     m.triangles = {{0, 1, 2}};
     m.corner_normals.assign(3, Vec3f{0, 0, 1});
     m.corner_uvs = {{0, 0}, {0, 1}, {1, 0}};  // turned: u runs along y
-    constexpr std::uint32_t kSize = 32;
-    std::vector<float> height(kSize * kSize);
-    for (std::uint32_t y = 0; y < kSize; ++y)
-        for (std::uint32_t x = 0; x < kSize; ++x) height[y * kSize + x] = 0.2f * 0.01f * (y + 0.5f) / kSize;
+    constexpr std::uint32_t kTexelsAcross = 32;
+    std::vector<float> height(kTexelsAcross * kTexelsAcross);
+    for (std::uint32_t y = 0; y < kTexelsAcross; ++y)
+        for (std::uint32_t x = 0; x < kTexelsAcross; ++x)
+            height[y * kTexelsAcross + x] = 0.2f * 0.01f * (y + 0.5f) / kTexelsAcross;
     Appearance a;
-    a.maps = {.size = kSize, .corner_uvs = m.corner_uvs, .height = height};
+    a.maps = {.size = kTexelsAcross, .corner_uvs = m.corner_uvs, .height = height};
     const Vec3f slope = MaterialReader(m, a).read(0, 0.3f, 0.3f).slope;
     EXPECT_NEAR(slope.x, 0.2, 1e-5);
     EXPECT_NEAR(slope.y, 0, 1e-5);
@@ -288,14 +290,14 @@ TEST(Picture, DrawsAnyMeshFromAnywhere) {
 TEST(Picture, TextureIsWhereItsUvsSayAndTheFloorIsDarkUnderTheObject) {
     const mesh::TriangleMesh m = make_sphere(48);
     const mesh::SurfaceQuery query(m);
-    constexpr std::uint32_t kSize = 64;
-    std::vector<Vec3f> map(kSize * kSize, Vec3f{0.8f});
-    for (std::uint32_t y = 0; y < kSize; ++y)
-        for (std::uint32_t x = 0; x < kSize; ++x)
-            if (y >= kSize / 2) map[y * kSize + x] = Vec3f{0.02f};  // upper half of the sphere is black
+    constexpr std::uint32_t kTexelsAcross = 64;
+    std::vector<Vec3f> map(kTexelsAcross * kTexelsAcross, Vec3f{0.8f});
+    for (std::uint32_t y = 0; y < kTexelsAcross; ++y)
+        for (std::uint32_t x = 0; x < kTexelsAcross; ++x)
+            if (y >= kTexelsAcross / 2) map[y * kTexelsAcross + x] = Vec3f{0.02f};  // upper half of the sphere is black
     Appearance a;
     a.finish = Finish::clay;
-    a.maps = {.size = kSize, .corner_uvs = m.corner_uvs, .base_colour = map};
+    a.maps = {.size = kTexelsAcross, .corner_uvs = m.corner_uvs, .base_colour = map};
     PictureOptions o;
     o.width = 240;
     o.height = 180;
