@@ -71,22 +71,18 @@ TEST_F(Decals, LaysAMaskFlatWhereNothingIsPainted) {
     EXPECT_NE(wrong.err.find("did you mean 'band'?"), std::string::npos) << wrong.err;
 }
 
-// A slash at the end of a folder's name makes no difference, whether the folder is there or not.
-TEST_F(Decals, WritesItsGuideIntoAnyFolder) {
+// One that is made, named with a slash at its end. Its pictures take seconds, so it is written once.
+TEST_F(Decals, WritesItsGuideIntoAFolderNamedWithASlash) {
     write("s.inkml", stroke_file());
     const std::string project = path("p.tuft");
     ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --atlas-size 512 --quiet --strokes " + path("s.inkml") +
                    " --project " + project)
                   .status,
               0);
-    fs::create_directory(path("there"));
-    fs::create_directory(path("there-too"));
-    for (const char* guide : {"new", "new-too/", "there", "there-too/"}) {
-        const test::Ran ran = tuft("decals " + project + " -o " + path("x.dxf") + " --quiet --guide " + path(guide));
-        EXPECT_EQ(ran.status, 0) << guide << ran.err;
-        for (const char* file : {"lines.obj", "overview.png", "piece-01.png"})
-            EXPECT_TRUE(fs::exists(fs::path(path(guide)) / file)) << guide << file;
-    }
+    const test::Ran made = tuft("decals " + project + " -o " + path("x.dxf") + " --quiet --guide " + path("new/"));
+    EXPECT_EQ(made.status, 0) << made.err;
+    for (const char* file : {"lines.obj", "overview.png", "piece-01.png"})
+        EXPECT_TRUE(fs::exists(path("new") + "/" + file)) << file;
     write("file", "x");
     for (const char* guide : {"file", "file/", "missing/guide/"}) {
         const test::Ran ran = tuft("decals " + project + " -o " + path("y.dxf") + " --guide " + path(guide));
