@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "contact/node_contact.h"
@@ -69,7 +70,7 @@ Recycled<NodeContact> find_tuft_contacts(const Step& w, const brush::TuftBend& t
         };
         const Recycled<NodeContact> own =
             find_chain_contacts(w.surface, w.root, nodes.subspan(first, count), w.near, w.search,
-                                {part(known.contacts), part(known.nodes), known.still, part(known.feet)});
+                                {part(known.contacts), part(known.nodes), known.still});
         out.insert(out.end(), own.begin(), own.end());
     }
     if (nodes.size() == out.size()) return out;
@@ -135,37 +136,57 @@ Recycled<ContactPlane> find_side_walls(const Step& w, const brush::Tuft& tuft, s
     return walls;
 }
 
-/// Whether the nodes are where they came to rest with the planes that were last found. Hair at rest keeps its planes:
-/// between two faces those of one rest may lead to the other, from sample to sample.
-bool rests(const Memory& memory, std::span<const Vec3> nodes, const Options& options) {
-    constexpr double kStill = 0.1;  // of the error that planes may have
-    if (memory.nodes.size() != nodes.size() || memory.planes.size() != nodes.size()) return false;
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-        if (glm::distance(memory.nodes[i], nodes[i]) > kStill * options.refresh_error) return false;
+constexpr double kStill = 0.1;        // of the error that planes may have: nodes that move less are at rest
+constexpr int kMostRestSearches = 3;  // between two faces the planes of one rest lead to the other, and back
+
+bool are_still(std::span<const Vec3> before, std::span<const Vec3> now, const Options& options) {
+    if (before.size() != now.size()) return false;
+    for (std::size_t i = 0; i < now.size(); ++i)
+        if (glm::distance(before[i], now[i]) > kStill * options.refresh_error) return false;
     return true;
 }
 
+/// Steps a tuft whose nodes are where they came to rest, on the planes of that rest. Returns nothing, and leaves the
+/// tuft as it was, where they do not stay there.
+std::optional<brush::TuftState> step_at_rest(const Step& w, brush::Tuft& tuft, double dt, const Memory& memory,
+                                             Recycled<NodeContact>& contacts) {
+    thread_local brush::TuftBend before;  // keeps its memory
+    before = tuft;
+    brush::TuftState state = brush::step(tuft, w.pose, memory.rest.planes, dt, memory.rest.walls);
+    const Recycled<Vec3> now = brush::predicted_nodes(tuft, w.pose);
+    if (!state.converged || !are_still(memory.rest.nodes, now, w.options)) {
+        static_cast<brush::TuftBend&>(tuft) = before;
+        return {};
+    }
+    KnownContacts known{.contacts = memory.contacts};
+    if (memory.rest.verified) known.nodes = memory.rest.nodes, known.still = kStill * w.options.refresh_error;
+    contacts = find_tuft_contacts(w, before, now, known);
+    contacts.resize(memory.contacts.size());
+    return state;
+}
+
 /// Solves, looks where the nodes came to rest, and solves again where their planes were off.
-/// `planes`: those of the last solve. `rest`: contacts of the spines where they lie now, or empty.
+/// `planes`: those of the last solve. `contacts`: of the spines where they lie now, or empty.
 brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memory, Recycled<ContactPlane>& planes,
-                       Recycled<NodeContact>& rest) {
+                       Recycled<NodeContact>& contacts) {
     const Recycled<double> radii = node_radii(tuft);
     const double root_radius = radii[tuft.trunk().rest_radius.size() - 1];
     const bool was_split = tuft.split;
     const Recycled<Vec3> nodes = brush::predicted_nodes(tuft, w.pose);
-    if (rests(memory, nodes, w.options)) {
-        planes = memory.planes;
-        return brush::step(tuft, w.pose, planes, dt, memory.walls);
+    Rest& rest = memory.rest;
+    const bool still = are_still(rest.nodes, nodes, w.options);
+    if (still && (rest.verified || rest.searches >= kMostRestSearches)) {
+        if (auto state = step_at_rest(w, tuft, dt, memory, contacts)) {
+            planes = rest.planes;
+            return std::move(*state);
+        }
     }
-    const Recycled<NodeContact> predicted = find_tuft_contacts(w, tuft, nodes, {.feet = memory.feet});
-    memory.feet.clear();
-    for (const NodeContact& c : predicted) {
-        planes.push_back(c.wedge);
-        if (memory.feet.size() < radii.size() && c.triangle != kNone) memory.feet.push_back(c.plane.origin);
-    }
+    Recycled<NodeContact> predicted = find_tuft_contacts(w, tuft, nodes, {.contacts = memory.contacts});
+    for (const NodeContact& c : predicted) planes.push_back(c.wedge);
     const Recycled<ContactPlane> walls = find_side_walls(w, tuft, predicted);
-    memory.nodes.clear();
-    if (w.options.max_refreshes <= 0) return brush::step(tuft, w.pose, planes, dt, walls);
+    rest.nodes.clear();
+    rest.searches = still ? rest.searches + 1 : 1;
+    rest.verified = false;
 
     thread_local brush::TuftBend before, solved;  // keep their memory
     thread_local brush::StepStart start;
@@ -176,21 +197,22 @@ brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memo
         const Recycled<Vec3> now = brush::predicted_nodes(tuft, w.pose);
         if (tuft.split != was_split && now.size() < nodes.size()) break;
         const auto compared = std::span(now).first(nodes.size());
-        const Recycled<NodeContact> contacts =
+        const Recycled<NodeContact> found =
             find_tuft_contacts(w, before, compared, {predicted, nodes, 0.5 * w.options.refresh_error});
         double worst = 0;
         Recycled<ContactPlane> fresh = planes;
         for (std::size_t i = 0; i < planes.size(); ++i) {
             const double radius = i < radii.size() ? radii[i] : root_radius;
             const double z = brush::height_over(planes[i], compared[i]);
-            const double height = brush::height_over(contacts[i].wedge, compared[i]);
+            const double height = brush::height_over(found[i].wedge, compared[i]);
             if (std::min(z, height) > 2 * radius) continue;
             worst = std::max(worst, std::abs(z - height));
-            fresh[i] = refresh_plane(planes[i], contacts[i], compared[i], radius);
+            fresh[i] = refresh_plane(planes[i], found[i], compared[i], radius);
         }
         if (worst < w.options.refresh_error) {
-            rest = contacts;
-            rest.resize(radii.size());
+            contacts = found;
+            contacts.resize(radii.size());
+            rest.verified = true;
             break;
         }
         std::swap(planes, fresh);  // `fresh` now holds those of the solve before
@@ -211,9 +233,13 @@ brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memo
             break;
         }
     }
-    memory.planes = planes;
-    memory.walls = walls;
-    memory.nodes = brush::predicted_nodes(tuft, w.pose);
+    if (state.converged) {
+        rest.planes = planes;
+        rest.walls = walls;
+        rest.nodes = brush::predicted_nodes(tuft, w.pose);
+    }
+    if (contacts.empty()) predicted.resize(radii.size());
+    memory.contacts = contacts.empty() ? std::move(predicted) : contacts;
     return state;
 }
 
@@ -439,10 +465,10 @@ void step_in_air(brush::Tuft& tuft, const Step& w, const StepInput& input, Resul
 /// Bends the tuft on the surface and finds frame, planes and travel.
 void step_on_surface(brush::Tuft& tuft, Step& w, double dt, Memory& memory, Result& result) {
     const brush::Preset& preset = tuft.preset;
-    Recycled<NodeContact> rest;
-    result.tuft = w.options.method == Method::exact ? solve(w, tuft, dt, memory, result.planes, rest)
+    Recycled<NodeContact> spines;
+    result.tuft = w.options.method == Method::exact ? solve(w, tuft, dt, memory, result.planes, spines)
                                                     : solve_by_vertices(w, tuft, dt, result);
-    const Recycled<Recycled<NodeContact>> contacts = find_section_contacts(w, tuft, result.tuft, std::move(rest));
+    const Recycled<Recycled<NodeContact>> contacts = find_section_contacts(w, tuft, result.tuft, std::move(spines));
     for (const Recycled<NodeContact>& branch : contacts) {
         result.branch_planes.emplace_back();
         for (const NodeContact& c : branch) result.branch_planes.back().push_back(c.plane);
@@ -484,7 +510,8 @@ Result take_step(brush::Tuft& tuft, const mesh::SurfaceQuery& surface, Memory& m
     if (!reachable) {
         step_in_air(tuft, w, input, result);
         memory.touching = false;
-        memory.nodes.clear();
+        memory.rest = {};
+        memory.contacts.clear();
     } else {
         step_on_surface(tuft, w, input.dt, memory, result);
         memory.touching = result.tuft.touching;

@@ -29,7 +29,15 @@ struct Options {
     int max_refreshes = 1;         ///< solves repeated with planes at the new node positions
 };
 
-/// Contact state of one stroke, from sample to sample.
+/// Where the nodes came to rest at a sample, and what they rested on.
+struct Rest {
+    Recycled<brush::ContactPlane> planes, walls;  ///< of the nodes, and beside them
+    Recycled<Vec3> nodes;                         ///< metres; none: nothing is known
+    bool verified = false;                        ///< the planes were within `Options::refresh_error` there
+    int searches = 0;                             ///< for planes since the nodes moved
+};
+
+/// Contact state of one stroke over one surface, from sample to sample. For another surface start with a new one.
 struct Memory {
     bool touching = false;   ///< at the last sample
     Vec3 root{0};            ///< ferrule's mouth at the last sample, metres
@@ -39,11 +47,9 @@ struct Memory {
     Vec3 origin{0};          ///< of the last contact frame
     Vec3 centre{0};          ///< of the touching hair, followed like `origin` but not moved onto the surface
     Recycled<Vec3> centres;  ///< of all sections at the last sample, metres
-    Recycled<Vec3> feet;     ///< points of the surface near the spines' nodes at the last sample, metres; or none
-    /// Planes of the nodes and walls beside them as they were last found, and where the nodes came to rest with them,
-    /// metres; or none.
-    Recycled<brush::ContactPlane> planes, walls;
-    Recycled<Vec3> nodes;
+    /// Of the spines' nodes at the last sample, or none: the next search begins there.
+    Recycled<NodeContact> contacts;
+    Rest rest;
     SmoothTriangles smooth;  ///< of the surface
 };
 

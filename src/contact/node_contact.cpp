@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "core/ease.h"
 
@@ -45,12 +47,11 @@ CornersBeyond corners_beyond(const mesh::TriangleMesh& mesh, std::uint32_t t, in
 }
 
 /// Whether both faces beside the edge of triangle t from its corner k on have the same normals along it.
-bool shares_normals(const mesh::TriangleMesh& mesh, std::uint32_t t, int k) {
+bool shares_normals(const mesh::TriangleMesh& mesh, std::uint32_t t, int k, const CornersBeyond& beyond) {
     const std::uint32_t other = mesh.neighbours[3 * t + k];
-    const auto [a, b, far] = corners_beyond(mesh, t, k);
     const auto& normal = mesh.corner_normals;
-    return a >= 0 && b >= 0 && normal[3 * t + k] == normal[3 * other + a] &&
-           normal[3 * t + (k + 1) % 3] == normal[3 * other + b];
+    return beyond.a >= 0 && beyond.b >= 0 && normal[3 * t + k] == normal[3 * other + beyond.a] &&
+           normal[3 * t + (k + 1) % 3] == normal[3 * other + beyond.b];
 }
 
 /// A point of a sharp convex edge and the normal of the face beyond it.
@@ -64,10 +65,11 @@ struct SharpEdge {
 std::optional<SharpEdge> sharp_edge(const mesh::TriangleMesh& mesh, std::uint32_t t, int k, const Vec3& q) {
     const std::uint32_t other = mesh.neighbours[3 * t + k];
     if (other == kNone) return {};
-    const auto [a, b, far] = corners_beyond(mesh, t, k);
+    const CornersBeyond beyond = corners_beyond(mesh, t, k);
+    const auto [a, b, far] = beyond;
     if (a < 0 || b < 0 || far < 0) return {};
     // Both faces share their normals on a smooth surface: nothing to compute.
-    if (shares_normals(mesh, t, k)) return {};
+    if (shares_normals(mesh, t, k, beyond)) return {};
     const int l = (k + 1) % 3;
     const Vec3 from = mesh.position(t, k), edge = mesh.position(t, l) - from;
     const double w = std::clamp(glm::dot(q - from, edge) / glm::dot(edge, edge), 0.0, 1.0);
@@ -81,28 +83,48 @@ std::optional<SharpEdge> sharp_edge(const mesh::TriangleMesh& mesh, std::uint32_
 
 constexpr double kEdgeReach = 1e-3;  // metres; more than a node goes from step to step
 
+/// Triangles that a search met, in their order.
+template <int most>
+class Met {
+  public:
+    explicit Met(std::uint32_t first) : triangles_{first} {}
+    int count() const { return count_; }
+    std::uint32_t operator[](int i) const { return triangles_[i]; }
+    bool contains(std::uint32_t t) const {
+        return std::find(triangles_.begin(), triangles_.begin() + count_, t) != triangles_.begin() + count_;
+    }
+    /// Returns false where there is no room.
+    bool add(std::uint32_t t) {
+        if (count_ == most) return false;
+        triangles_[count_++] = t;
+        return true;
+    }
+
+  private:
+    std::array<std::uint32_t, most> triangles_;
+    int count_ = 1;
+};
+
 /// The sharp convex edge nearest to the surface point q within reach, over triangles that
 /// hang together with q's without such an edge between them.
 std::optional<SharpEdge> find_edge(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint& q) {
-    constexpr int kMost = 24;  // triangles
-    std::array<std::uint32_t, kMost> seen{q.triangle};
-    int count = 1;
+    Met<24> met(q.triangle);
     std::optional<SharpEdge> best;
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < met.count(); ++i) {
         for (int k = 0; k < 3; ++k) {
-            const std::uint32_t next = mesh.neighbours[3 * seen[i] + k];
-            if (next == kNone || std::find(seen.begin(), seen.begin() + count, next) != seen.begin() + count) continue;
-            const Vec3 from = mesh.position(seen[i], k), edge = mesh.position(seen[i], (k + 1) % 3) - from;
+            const std::uint32_t next = mesh.neighbours[3 * met[i] + k];
+            if (next == kNone || met.contains(next)) continue;
+            const Vec3 from = mesh.position(met[i], k), edge = mesh.position(met[i], (k + 1) % 3) - from;
             const Vec3 to_q = q.position - from;
             const double length2 = glm::dot(edge, edge), along = std::clamp(glm::dot(to_q, edge), 0.0, length2);
             // Squared distance from the edge, times its squared length.
             if (length2 * glm::dot(to_q, to_q) + along * (along - 2 * glm::dot(to_q, edge)) >
                 kEdgeReach * kEdgeReach * length2)
                 continue;
-            if (const auto sharp = sharp_edge(mesh, seen[i], k, q.position)) {
+            if (const auto sharp = sharp_edge(mesh, met[i], k, q.position)) {
                 if (!best || sharp->distance < best->distance) best = sharp;
-            } else if (count < kMost) {
-                seen[count++] = next;
+            } else {
+                met.add(next);
             }
         }
     }
@@ -127,20 +149,20 @@ bool is_smooth_round(const mesh::TriangleMesh& mesh, std::uint32_t t) {
     double reach = 0;
     for (int k = 0; k < 3; ++k) reach = std::max(reach, glm::length(mesh.position(t, k) - middle));
     reach += 1.001 * kEdgeReach;
-    std::array<std::uint32_t, kMost> seen{t};
-    int count = 1;
-    for (int i = 0; i < count; ++i) {
+    const double area = 0.5 * glm::length(glm::cross(mesh.position(t, 1) - mesh.position(t, 0),
+                                                     mesh.position(t, 2) - mesh.position(t, 0)));
+    if (std::numbers::pi * reach * reach > kMost * area) return false;  // about so many lie within reach
+    Met<kMost> met(t);
+    for (int i = 0; i < met.count(); ++i) {
         for (int k = 0; k < 3; ++k) {
-            const std::uint32_t next = mesh.neighbours[3 * seen[i] + k];
+            const std::uint32_t next = mesh.neighbours[3 * met[i] + k];
             if (next == kNone) continue;
-            const Vec3 from = mesh.position(seen[i], k), edge = mesh.position(seen[i], (k + 1) % 3) - from;
+            const Vec3 from = mesh.position(met[i], k), edge = mesh.position(met[i], (k + 1) % 3) - from;
             const double along = std::clamp(glm::dot(middle - from, edge) / glm::dot(edge, edge), 0.0, 1.0);
             if (glm::length(from + along * edge - middle) > reach) continue;
             // Whether an edge is sharp depends on the place along it, but where both faces have the same normals.
-            if (!shares_normals(mesh, seen[i], k)) return false;
-            if (std::find(seen.begin(), seen.begin() + count, next) != seen.begin() + count) continue;
-            if (count == kMost) return false;
-            seen[count++] = next;
+            if (!shares_normals(mesh, met[i], k, corners_beyond(mesh, met[i], k))) return false;
+            if (!met.contains(next) && !met.add(next)) return false;
         }
     }
     return true;
@@ -204,9 +226,11 @@ NodeContact find_node_contact(const mesh::SurfaceQuery& surface, const NodeQuery
 
 namespace {
 
-/// Whether a node that was at `was` keeps its plane. Distances from the surface change no faster than the node.
-bool keeps_plane(const NodeContact& before, const Vec3& was, const Vec3& node, double still) {
-    return before.triangle != kNone && before.wedge.beyond_normal == Vec3{0} && glm::length(node - was) <= still;
+/// Whether a node that was at `was` keeps its plane. Distances from the surface change no faster than the node. One
+/// that was farther than `near` has no plane of its own.
+bool keeps_plane(const NodeContact& before, const Vec3& was, const Vec3& node, double still, double near) {
+    return before.triangle != kNone && before.height <= near && before.wedge.beyond_normal == Vec3{0} &&
+           glm::length(node - was) <= still;
 }
 
 /// The contact of a node that moved to `node` and keeps its plane.
@@ -236,15 +260,15 @@ Recycled<NodeContact> find_chain_contacts(const mesh::SurfaceQuery& surface, con
             continue;
         }
         const NodeContact* before = i < known.contacts.size() ? &known.contacts[i] : nullptr;
-        if (before && i < known.nodes.size() && keeps_plane(*before, known.nodes[i], node, known.still)) {
+        if (before && i < known.nodes.size() && keeps_plane(*before, known.nodes[i], node, known.still, near)) {
             last = moved_on(*before, node, options.lift);
         } else {
             const Vec3* foot = nullptr;
-            const auto consider = [&](const Vec3& point) {
+            for (const NodeContact* hint : {&std::as_const(last), before}) {
+                if (!hint || hint->triangle == kNone) continue;
+                const Vec3& point = hint->plane.origin;
                 if (!foot || glm::length(point - node) < glm::length(*foot - node)) foot = &point;
-            };
-            if (const NodeContact& hint = before ? *before : last; hint.triangle != kNone) consider(hint.plane.origin);
-            if (!before && i < known.feet.size()) consider(known.feet[i]);
+            }
             const Vec3& from = i + 1 < nodes.size() ? out[i + 1].outside : root.outside;
             last = find_node_contact(surface, {node, from, last.side, foot}, options);
         }

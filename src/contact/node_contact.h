@@ -58,9 +58,8 @@ NodeContact find_node_contact(const mesh::SurfaceQuery& surface, const NodeQuery
 /// What is known of the contacts of a chain before they are looked for. Each may be empty.
 struct KnownContacts {
     std::span<const NodeContact> contacts;  ///< of the same nodes a little before
-    std::span<const Vec3> nodes;            ///< metres, where the nodes of `contacts` were
+    std::span<const Vec3> nodes;            ///< metres, where the nodes of `contacts` were; none: unknown
     double still = 0;                       ///< metres: a node that moved no more keeps its plane, but beside an edge
-    std::span<const Vec3> feet;             ///< metres, points of the surface, near the nodes at best
 };
 
 /// Returns the contacts of a chain of nodes (tip first, root last, like the tuft's). Each is found from the previous

@@ -435,6 +435,35 @@ TEST(NodeContact, NormalTurnsSmoothlyOverAConvexEdge) {
     EXPECT_NEAR(before.x, 1, 1e-6);
 }
 
+// After a jump of the hand the planes may be too far off. While it stands still they are looked for again until they
+// hold.
+TEST(Contact, PlanesOfARestAreTrueWhereTheNodesLie) {
+    const mesh::TriangleMesh m = shapes::bowl(0.02, 60);
+    const mesh::SurfaceQuery surface(m);
+    ContactStage hand(surface);
+    Random random(4);
+    int compared = 0;
+    for (int jump = 0; jump < 40; ++jump) {
+        const double x = random.uniform(-0.008, 0.008), y = random.uniform(-0.008, 0.008);
+        const Vec3 tip{x, y, -std::sqrt(4e-4 - x * x - y * y) - random.uniform(1e-3, 8e-3)};
+        Result r;
+        for (int i = 0; i < 6; ++i) r = hand.move(tip);
+        const brush::Pose pose = pose_at(hand.preset(), tip);
+        const Recycled<Vec3> nodes = brush::predicted_nodes(hand.tuft, pose);
+        const NodeContact root = find_node_contact(surface, {pose.position, pose.position}, {});
+        const Recycled<NodeContact> fresh = find_chain_contacts(surface, root, nodes, 0.01, {});
+        ASSERT_EQ(r.planes.size(), nodes.size());
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            const double height = brush::height_over(fresh[i].wedge, nodes[i]);
+            if (height > 1e-3) continue;
+            ++compared;
+            EXPECT_NEAR(brush::height_over(r.planes[i], nodes[i]), height, hand.options.refresh_error)
+                << jump << " " << i;
+        }
+    }
+    EXPECT_GT(compared, 100);
+}
+
 // What is known of a surface bounds the search and leaves out what cannot be: no bit of a contact changes, on a block
 // with sharp edges, on a smooth bowl and on a roof, from coarse triangles to some finer than the reach of an edge.
 TEST(NodeContact, KnownFeetAndSmoothTrianglesChangeNoBit) {
@@ -452,9 +481,12 @@ TEST(NodeContact, KnownFeetAndSmoothTrianglesChangeNoBit) {
             };
             const NodeContact root = find_node_contact(surface, {near(2e-3), near(2e-3)}, plain);
             const Vec3 chain[] = {near(3e-3), near(2e-3), near(1e-3)};
+            NodeContact before[3];
             const Vec3 feet[] = {m.position(0, 0), at, at};
+            for (int k = 0; k < 3; ++k) before[k].triangle = 0, before[k].plane.origin = feet[k];
             const Recycled<NodeContact> a = find_chain_contacts(surface, root, chain, 0.01, plain),
-                                        b = find_chain_contacts(surface, root, chain, 0.01, known, {.feet = feet});
+                                        b = find_chain_contacts(surface, root, chain, 0.01, known,
+                                                                {.contacts = before});
             for (std::size_t k = 0; k < a.size(); ++k) {
                 ASSERT_EQ(a[k].triangle, b[k].triangle);
                 ASSERT_EQ(a[k].plane.origin, b[k].plane.origin);
