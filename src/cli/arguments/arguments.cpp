@@ -8,6 +8,7 @@
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <type_traits>
 
 #include "brush/preset/preset.h"
 #include "cli/arguments/options.h"
@@ -66,7 +67,6 @@ CLI::App* add_inspect(CLI::App& app, Inspect& inspect) {
     command->add_option("--save-ink", inspect.save_ink, "write them as an ink (.toml), for --ink")->needs(spot);
     command->add_flag("--palette", inspect.palette, "the point is one of the palette, from its middle, z = 0")
         ->needs(spot);
-    add_common(command, inspect.common);
     return command;
 }
 
@@ -76,7 +76,6 @@ CLI::App* add_unwrap(CLI::App& app, Unwrap& unwrap) {
     command->add_option("-o,--output", unwrap.output, "write the model with its UVs (.obj or .glb)")->required();
     command->add_option("--picture", unwrap.picture, "write a picture of the atlas (.png)");
     add_surface(command, unwrap.surface);
-    add_common(command, unwrap.common);
     return command;
 }
 
@@ -92,7 +91,6 @@ CLI::App* add_decimate(CLI::App& app, Decimate& decimate) {
                      "lie some times as far, and how far is printed")
         ->check(number_in(1e-9, kFarthestMm, "POSITIVE"));
     add_reading(command, decimate, "unit of the model file (default: a guess from its size)");
-    add_common(command, decimate.common);
     return command;
 }
 
@@ -126,7 +124,6 @@ CLI::App* add_replay(CLI::App& app, Replay& replay) {
     command->add_option("--export", replay.exported, "write the textured model: .glb, .gltf or .obj");
     command->add_option("--preview", replay.preview, "write a picture (.png)");
     add_view(command, replay.view);
-    add_common(command, replay.common);
     return command;
 }
 
@@ -168,7 +165,6 @@ CLI::App* add_export(CLI::App& app, Export& exported) {
         ->needs(filaments);
     add_recolouring(command, exported.recolouring);
     add_layers(command, exported.layers);
-    add_common(command, exported.common);
     return command;
 }
 
@@ -185,7 +181,6 @@ CLI::App* add_layer(CLI::App& app, LayerWork& layer) {
     command->add_option("NAME", layer.name, "name of the layer")->required();
     command->add_option("VALUE", layer.value,
                         "opacity (0 to 1), blend (normal, glaze, multiply), new name, or place (1 is the lowest)");
-    add_common(command, layer.common);
     return command;
 }
 
@@ -203,7 +198,6 @@ CLI::App* add_part(CLI::App& app, PartWork& part) {
         "NAME", part.names,
         "names of parts (list, show, lock and unlock: all without any); with substrate PART=NAME, where NAME "
         "is that of a substrate, a .toml file, or none for the project's");
-    add_common(command, part.common);
     return command;
 }
 
@@ -228,7 +222,6 @@ CLI::App* add_fill(CLI::App& app, FillWork& fill) {
     command->add_option("--layer", fill.layer, "layer to fill; it is made when there is none yet");
     command->add_flag("--palette", fill.palette,
                       "pour it onto the palette (points in millimetres from its middle, z = 0)");
-    add_common(command, fill.common);
     return command;
 }
 
@@ -258,7 +251,6 @@ CLI::App* add_mask(CLI::App& app, MaskWork& mask) {
     command->add_option("--intersect", mask.intersect, "what lies in all of these masks: NAME,...")->delimiter(',');
     command->add_option("--unite", mask.unite, "what lies in any of these masks: NAME,...")->delimiter(',');
     command->add_flag("--remove", mask.remove, "end the mask; what was painted under it stays");
-    add_common(command, mask.common);
     return command;
 }
 
@@ -271,7 +263,6 @@ CLI::App* add_render(CLI::App& app, Render& render) {
     add_recolouring(command, render.recolouring);
     command->add_option("--material", render.material, "porcelain, clay, ... (default: the project's)");
     add_view(command, render.view);
-    add_common(command, render.common);
     return command;
 }
 
@@ -289,7 +280,6 @@ CLI::App* add_brush(CLI::App& app, Brush& brush) {
     fit->add_option("MEASURED", brush.calibrate, "measured table (.csv): z_mm and any of width_mm, drag_mm, offset_mm")
         ->required();
     fit->add_option("-o,--output", brush.output, "brush preset to write (.toml)")->required();
-    add_common(command, brush.common);
     auto* match = command->add_subcommand("match", "rank the brushes by how well they draw a measured table");
     match->add_option("MEASURED", brush.match, "measured table (.csv): z_mm and any of width_mm, drag_mm, offset_mm")
         ->required();
@@ -304,7 +294,6 @@ CLI::App* add_bias(CLI::App& app, BiasCorrection& bias) {
     command->add_option("INTENDED", bias.intended, "strokes as they should be (.inkml)")->required();
     command->add_option("WRITTEN", bias.written, "the same strokes as the writer makes them (.inkml)")->required();
     command->add_option("-o,--output", bias.output, "bias correction to write (.toml)")->required();
-    add_common(command, bias.common);
     return command;
 }
 
@@ -327,7 +316,6 @@ CLI::App* add_ink(CLI::App& app, InkWork& ink) {
     match->add_option("--parts", ink.parts, "most pigments in the mix")->check(number_in(1, 4));
     match->add_option("-o,--output", ink.output, "write the mix as an ink (.toml), for --ink");
     add_common(match, ink.common);
-    add_common(command, ink.common);
     return command;
 }
 
@@ -357,7 +345,6 @@ CLI::App* add_bench(CLI::App& app, Bench& bench) {
         ->needs(report);
     scaling->excludes(report);
     add_store(command, bench.surface);
-    add_common(command, bench.common);
     return command;
 }
 
@@ -371,10 +358,12 @@ template <class T>
 Entry make_entry(CLI::App& app, CLI::App* (*add)(CLI::App&, T&)) {
     const auto arguments = std::make_shared<T>();
     CLI::App* command = add(app, *arguments);
+    if constexpr (!std::is_same_v<T, DeviceWork>)
+        add_common(command, arguments->common);  // those of `device` have them
     return {command, [arguments] { return Command(*arguments); }};
 }
 
-/// Adds all commands, in the order of --help.
+/// Adds all commands, in the order of --help, each with the options of `add_common` at its end.
 std::vector<Entry> add_commands(CLI::App& app) {
     return {
         make_entry(app, add_paint),    make_entry(app, add_write),    make_entry(app, add_inspect),

@@ -110,7 +110,6 @@ CLI::App* add_decals(CLI::App& app, Decals& d) {
                   "folder for a placing guide: a picture of the model for each piece, and lines.obj, the cut lines on "
                   "the model")
         ->type_name("FOLDER");
-    add_common(s, d.common);
     return s;
 }
 

@@ -27,6 +27,11 @@ void add_motion(CLI::App* app, DeviceWork& d) {
         ->check(CLI::IsMember({"press", "press-fast", "drag", "circles", "taps", "rocking", "rest", "hit", "slide"}));
 }
 
+void add_delay(CLI::App* app, DeviceWork& d) {
+    app->add_option("--delay", d.simulation.delay_ms, "delay of a force on its way, in milliseconds (default: 0)")
+        ->check(number_in(0, 20));
+}
+
 }  // namespace
 
 CLI::App* add_device(CLI::App& app, DeviceWork& d) {
@@ -40,8 +45,7 @@ CLI::App* add_device(CLI::App& app, DeviceWork& d) {
     simulate->add_option("--brush", d.brush, "brush that the hand holds (default: wolf-medium)")->type_name("BRUSH");
     simulate->add_option("--model", d.model, "model that the hand paints (default: the bowl)");
     add_motion(simulate, d);
-    simulate->add_option("--delay", d.simulation.delay_ms, "delay of a force on its way, in milliseconds (default: 0)")
-        ->check(number_in(0, 20));
+    add_delay(simulate, d);
     simulate
         ->add_option("--fault", d.simulation.fault,
                      "fault of the server, to test a program that is joined to it (default: none)")
@@ -58,8 +62,7 @@ CLI::App* add_device(CLI::App& app, DeviceWork& d) {
     test->add_option("--hours", d.trial.hours, "try one hand for so many simulated hours too")
         ->check(number_in(0, 100));
     test->add_flag("--all-brushes", d.trial.all_brushes, "all shipped brushes, not only the one of --brush");
-    test->add_option("--delay", d.simulation.delay_ms, "delay of a force on its way, in milliseconds (default: 0)")
-        ->check(number_in(0, 20));
+    add_delay(test, d);
     auto* record = device->add_subcommand("record", "record what an arm does and the forces that it is given (.csv)");
     add_arm(record, d);
     add_hand(record, d);

@@ -29,7 +29,6 @@ CLI::App* add_film(CLI::App& app, Film& film) {
     add_surface(s, film.replay.surface);
     add_cache(s, film.replay.surface);
     add_camera(s, film.replay.view);
-    add_common(s, film.common);
     return s;
 }
 

@@ -46,7 +46,7 @@ void add_camera(CLI::App* app, View& v);
 void add_view(CLI::App* app, View& v);
 /// Adds what `tuft write` takes besides: the text, its characters and its layout.
 void add_write_options(CLI::App* app, Write& write);
-/// Adds what `tuft paint` takes besides its model and its stroke files.
+/// Adds what `tuft paint` takes besides its model, its stroke files and the common options.
 void add_paint_options(CLI::App* app, Paint& paint);
 /// Adds `tuft device` with its commands.
 CLI::App* add_device(CLI::App& app, DeviceWork& device);

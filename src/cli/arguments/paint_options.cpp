@@ -230,7 +230,6 @@ void add_paint_options(CLI::App* p, Paint& paint) {
     add_cache(p, paint.surface);
     add_outputs(p, paint);
     add_view(p, paint.view);
-    add_common(p, paint.common);
 }
 
 namespace {

@@ -50,7 +50,6 @@ CLI::App* add_trajectory(CLI::App& app, TrajectoryWork& work) {
     s->add_option("--clearance", work.clearance_mm,
                   "mm of the tip above the surface before and after a stroke (default: 20)")
         ->check(number_in(5, 1000));
-    add_common(s, work.common);
     return s;
 }
 

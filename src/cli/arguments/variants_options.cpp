@@ -13,7 +13,6 @@ CLI::App* add_variants(CLI::App& app, VariantsWork& work) {
                 "paint what is not done yet by worker processes, one per core or --threads; then as --gather");
     s->add_flag("--gather", work.gather,
                 "write table.csv, table.json, contact sheets, and a tolerance map of each decoration");
-    add_common(s, work.common);
     return s;
 }
 
@@ -27,7 +26,6 @@ CLI::App* add_run_task(CLI::App& app, RunTask& work) {
         ->needs(index);
     s->add_flag("--rest", work.rest, "all tasks that are not done and that no other process has; says which")
         ->excludes(index);
-    add_common(s, work.common);
     return s;
 }
 
