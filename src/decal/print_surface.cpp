@@ -16,6 +16,7 @@ namespace tuft::decal {
 namespace {
 
 constexpr double kInside = -1e-9;  // barycentric weights of points on an edge, rounding
+constexpr double kSlack = 1e-9;    // metres, more than rounding changes a distance
 
 /// Walks over the seams and lays down triangle after triangle.
 class Strip {
@@ -37,8 +38,10 @@ class Strip {
             if (film_.label[g / 3] == own_label_) continue;  // a slit of the panel itself
             const std::uint32_t a = panel_.chart.faces[h / 3][(h % 3 + 1) % 3], b = panel_.chart.faces[h / 3][h % 3];
             first.push_back({0, g, a, b});
-            seams_.push_back({flat_[a], flat_[b]});
+            seams_.push_back({flat_[a], flat_[b], glm::min(flat_[a], flat_[b]), glm::max(flat_[a], flat_[b])});
         }
+        std::sort(seams_.begin(), seams_.end(), [](const Seam& a, const Seam& b) { return a.lo.x < b.lo.x; });
+        for (const Seam& s : seams_) widest_ = std::max(widest_, s.hi.x - s.lo.x);
         for (const Entry& e : first) enter(e.half, e.first, e.second);
         while (!queue_.empty()) {
             const Entry e = queue_.top();
@@ -60,19 +63,34 @@ class Strip {
         bool operator<(const Entry& o) const { return distance != o.distance ? distance > o.distance : half > o.half; }
     };
 
-    /// How far an edge that is laid flat lies from the seams.
-    double seam_distance(const Vec2& a, const Vec2& b) const {
+    /// An edge of a seam, laid flat.
+    struct Seam {
+        Vec2 a, b;
+        Vec2 lo, hi;  // its box
+    };
+
+    /// How far an edge that is laid flat lies from the seams, where that is less than `reach`; else `reach` or more.
+    /// Cost: the seams whose span in x comes within reach.
+    double seam_distance(const Vec2& a, const Vec2& b, double reach) const {
+        const Vec2 lo = glm::min(a, b), hi = glm::max(a, b);
+        const double far = reach + kSlack;
         double least = std::numeric_limits<double>::infinity();
-        for (const auto& [c, d] : seams_)
-            least = std::min({least, segment_distance(c, d, a), segment_distance(c, d, b), segment_distance(a, b, c),
-                              segment_distance(a, b, d)});
+        auto at = std::lower_bound(seams_.begin(), seams_.end(), lo.x - far - widest_,
+                                   [](const Seam& s, double x) { return s.lo.x < x; });
+        for (; at != seams_.end() && at->lo.x <= hi.x + far && least > 0; ++at) {
+            const Vec2 gap = glm::max(glm::max(at->lo - hi, lo - at->hi), Vec2(0));
+            if (glm::length(gap) > std::min(least, reach) + kSlack) continue;
+            least = std::min({least, segment_distance(at->a, at->b, a), segment_distance(at->a, at->b, b),
+                              segment_distance(a, b, at->a), segment_distance(a, b, at->b)});
+        }
         return least;
     }
 
     void enter(std::uint32_t half, std::uint32_t first, std::uint32_t second) {
         if (used_[half / 3]) return;
-        const double distance = seam_distance(flat_[first], flat_[second]);
-        if (distance >= reach_(film_.label[half / 3])) return;
+        const double reach = reach_(film_.label[half / 3]);
+        const double distance = seam_distance(flat_[first], flat_[second], reach);
+        if (distance >= reach) return;
         queue_.push({distance, half, first, second});
     }
 
@@ -127,7 +145,8 @@ class Strip {
     std::vector<Vec2> flat_;
     std::unordered_map<std::uint32_t, std::uint32_t> vertex_;  // of the film mesh, in the strip
     std::priority_queue<Entry> queue_;
-    std::vector<std::pair<Vec2, Vec2>> seams_;  // of the panel, laid flat
+    std::vector<Seam> seams_;  // of the panel, by the lower end of their span in x
+    double widest_ = 0;        // of those spans, metres
 };
 
 }  // namespace

@@ -22,7 +22,8 @@ struct PrintSurface {
 };
 
 /// Returns the panel and what lies within `reach(label)` metres beyond its seams with the panels of that label. The
-/// strip is unrolled over the seam, then laid out as rigid as possible with the panel held.
+/// strip is unrolled over the seam, then laid out as rigid as possible with the panel held. Cost besides that: each
+/// edge of the strip against the edges of the seams whose span in x comes within reach.
 PrintSurface extend(const FilmMesh& film, const Panel& panel, const std::function<double(std::uint32_t label)>& reach);
 
 /// A point of the model under a point of the sheet.

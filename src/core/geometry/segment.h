@@ -5,8 +5,8 @@
 #include "core/geometry/types.h"
 
 /// \file
-/// Closest point on a line segment, in two or three dimensions. Used by `atlas`, `stroke` and `io` for distances
-/// from borders and stencil edges.
+/// Closest point on a line segment, in two or three dimensions. Used by `atlas`, `decal`, `stroke` and `io` for
+/// distances from borders, seams and stencil edges.
 namespace tuft {
 
 /// Returns the parameter λ in [0, 1] of the point a + λ (b − a) that is closest to p. Returns 0 where a = b.
