@@ -88,13 +88,15 @@ void add_outlined(std::vector<std::vector<Vec2>>& lines, const Glyph& glyph, con
     for (const GlyphStroke& stroke : glyph.strokes) add(stroke.median, false);
 }
 
-/// The lines as they are set: in columns, glyphs as they stand there.
-std::vector<std::vector<Glyph>> set_lines(const Text& text) {
-    std::vector<std::vector<Glyph>> lines = text.lines;
-    if (text.layout.direction == Direction::vertical)
-        for (std::vector<Glyph>& line : lines)
-            for (Glyph& glyph : line) glyph = in_column(std::move(glyph));
-    return lines;
+using Lines = std::vector<std::vector<Glyph>>;
+
+/// The lines as they are set: those of the text or, in columns, its glyphs as they stand there, which `columns` holds.
+const Lines& set_lines(const Text& text, Lines& columns) {
+    if (text.layout.direction != Direction::vertical) return text.lines;
+    columns = text.lines;
+    for (std::vector<Glyph>& column : columns)
+        for (Glyph& glyph : column) glyph = in_column(std::move(glyph));
+    return columns;
 }
 
 const std::vector<Glyph>& only_line(const Text& text) {
@@ -165,7 +167,8 @@ Vec2 extent_of(const Text& text) {
     LayoutOptions options = text.layout;
     options.side = 1;
     Vec2 lo(1e300), hi(-1e300);
-    const auto lines = set_lines(text);
+    Lines columns;
+    const Lines& lines = set_lines(text, columns);
     const auto corners = place_in_lines(lines, options);
     for (std::size_t l = 0; l < corners.size(); ++l)
         for (std::size_t i = 0; i < corners[l].size(); ++i) {
@@ -194,7 +197,8 @@ std::optional<std::string> size_for(const Text& text, const std::string& brush) 
 void append_lines(std::vector<stroke::JournalEntry>& entries, const Text& text, const TextHand& hand,
                   const ProgressFn& progress) {
     Writer writer = writer_for(text, hand);
-    const auto lines = set_lines(text);
+    Lines columns;
+    const Lines& lines = set_lines(text, columns);
     const auto corners = place_in_lines(lines, text.layout);
     Entries to(entries, text, hand);
     for (std::size_t l = 0; l < lines.size(); ++l) {
@@ -228,7 +232,8 @@ std::vector<stroke::Placement> places_along(const Text& text, const ModelPath& p
 
 std::vector<std::vector<Vec2>> outlined_lines(const Text& text) {
     std::vector<std::vector<Vec2>> lines;
-    const auto set = set_lines(text);
+    Lines columns;
+    const Lines& set = set_lines(text, columns);
     const auto corners = place_in_lines(set, text.layout);
     for (std::size_t l = 0; l < set.size(); ++l)
         for (std::size_t i = 0; i < set[l].size(); ++i) add_outlined(lines, set[l][i], text, corners[l][i]);
@@ -237,7 +242,8 @@ std::vector<std::vector<Vec2>> outlined_lines(const Text& text) {
 
 std::vector<std::vector<Vec2>> middle_lines(const Text& text) {
     std::vector<std::vector<Vec2>> lines;
-    const auto set = set_lines(text);
+    Lines columns;
+    const Lines& set = set_lines(text, columns);
     const auto corners = place_in_lines(set, text.layout);
     for (std::size_t l = 0; l < set.size(); ++l) {
         std::vector<Vec2>& line = lines.emplace_back();
