@@ -47,7 +47,8 @@ Glyph bar(char32_t code, double advance) {  // a level stroke 100 units above th
 TEST(Layout, FormsInAColumnAreThoseOfUnicode) {
     for (const char32_t c : std::u32string(U"永あア가・〇"))
         EXPECT_EQ(column_form(c), ColumnForm::upright) << utf8_of(c);
-    for (const char32_t c : std::u32string(U"、。，．")) EXPECT_EQ(column_form(c), ColumnForm::corner) << utf8_of(c);
+    for (const char32_t c : std::u32string(U"、。，．っャぁゎゖォヮヶㇰㇿ"))
+        EXPECT_EQ(column_form(c), ColumnForm::corner) << utf8_of(c);
     for (const char32_t c : std::u32string(U"aZ7é(…—「」《》（）：ー～“"))
         EXPECT_EQ(column_form(c), ColumnForm::sideways) << utf8_of(c);
 }

@@ -36,6 +36,19 @@ struct Glyph {
     bool single_line = false;          ///< of a single-line font: an even pen line, without classes
 };
 
+/// Replaces every point p of a glyph by `to`(p).
+template <class F>
+void map_points(Glyph& glyph, const F& to) {
+    const auto all = [&](std::vector<Vec2>& points) {
+        for (Vec2& p : points) p = to(p);
+    };
+    for (Ring& ring : glyph.area) all(ring);
+    for (GlyphStroke& s : glyph.strokes) {
+        all(s.median);
+        for (Ring& ring : s.outline) all(ring);
+    }
+}
+
 /// Returns a point of a glyph that leans to the right of its reader by `slant` radians, units.
 Vec2 leaned(const Vec2& p, const Glyph& glyph, double slant);
 

@@ -168,13 +168,7 @@ std::optional<Glyph> full_width(char32_t code, const std::vector<GlyphSource*>& 
     for (GlyphSource* source : sources)
         if (std::optional<Glyph> glyph = source->find(code - 0xFEE0)) {
             const Vec2 shift(0.5 * (kSide - glyph->advance), 0);
-            for (Ring& ring : glyph->area)
-                for (Vec2& p : ring) p += shift;
-            for (GlyphStroke& s : glyph->strokes) {
-                for (Vec2& p : s.median) p += shift;
-                for (Ring& ring : s.outline)
-                    for (Vec2& p : ring) p += shift;
-            }
+            map_points(*glyph, [&](const Vec2& p) { return p + shift; });
             glyph->code = code;
             glyph->advance = kSide;
             return glyph;

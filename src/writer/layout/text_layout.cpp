@@ -62,19 +62,6 @@ Vec2 middle_of_ink(const Glyph& glyph) {
     return lo.x <= hi.x ? 0.5 * (lo + hi) : Vec2(0.5 * kSide);
 }
 
-/// Moves every point of a glyph.
-template <class F>
-void map_points(Glyph& glyph, const F& to) {
-    const auto all = [&](std::vector<Vec2>& points) {
-        for (Vec2& p : points) p = to(p);
-    };
-    for (Ring& ring : glyph.area) all(ring);
-    for (GlyphStroke& s : glyph.strokes) {
-        all(s.median);
-        for (Ring& ring : s.outline) all(ring);
-    }
-}
-
 /// A segment of the section in a triangle: crossed edges as keys of their vertices.
 struct Crossing {
     std::uint64_t edge = 0;
@@ -167,7 +154,13 @@ std::vector<std::u32string> lines_of(std::string_view text) {
 }
 
 ColumnForm column_form(char32_t code) {
-    static constexpr CodeRange kCorner[] = {{0x3001, 0x3002}, {0xFF0C, 0xFF0C}, {0xFF0E, 0xFF0E}};
+    // Punctuation, then the small kana.
+    static constexpr CodeRange kCorner[] = {
+        {0x3001, 0x3002}, {0xFF0C, 0xFF0C}, {0xFF0E, 0xFF0E}, {0x3041, 0x3041}, {0x3043, 0x3043}, {0x3045, 0x3045},
+        {0x3047, 0x3047}, {0x3049, 0x3049}, {0x3063, 0x3063}, {0x3083, 0x3083}, {0x3085, 0x3085}, {0x3087, 0x3087},
+        {0x308E, 0x308E}, {0x3095, 0x3096}, {0x30A1, 0x30A1}, {0x30A3, 0x30A3}, {0x30A5, 0x30A5}, {0x30A7, 0x30A7},
+        {0x30A9, 0x30A9}, {0x30C3, 0x30C3}, {0x30E3, 0x30E3}, {0x30E5, 0x30E5}, {0x30E7, 0x30E7}, {0x30EE, 0x30EE},
+        {0x30F5, 0x30F6}, {0x31F0, 0x31FF}};
     static constexpr CodeRange kSideways[] = {
         {0x20, 0xA6},     {0xA8, 0xA8},     {0xAA, 0xAD},     {0xAF, 0xB0},     {0xB2, 0xBB},     {0xBF, 0xD6},
         {0xD8, 0xF6},     {0xF8, 0x2E9},    {0x2EC, 0x10FF},  {0x1E00, 0x200F}, {0x2010, 0x2015}, {0x2018, 0x201F},

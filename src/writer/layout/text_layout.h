@@ -43,7 +43,7 @@ std::vector<std::u32string> lines_of(std::string_view text);
 /// How a character stands in a column, by the property Vertical_Orientation [UAX50].
 enum class ColumnForm {
     upright,   ///< as on a line (U)
-    corner,    ///< upright, its ink moved to the opposite corner of the square: 、。，．(Tu)
+    corner,    ///< upright, its ink moved to the opposite corner of the square: 、。，．, small kana (Tu)
     sideways,  ///< turned clockwise by a quarter: Latin, digits, brackets, dashes (R, Tr)
 };
 ColumnForm column_form(char32_t code);
@@ -53,8 +53,7 @@ ColumnForm column_form(char32_t code);
 Glyph in_column(Glyph glyph);
 
 /// Puts a quarter of the side between a Han character or kana and a Latin, Greek or Cyrillic letter or a digit beside
-/// it
-/// ([JLREQ2020] 3.2.6), as `Glyph::after` of the first of them.
+/// it ([JLREQ2020] 3.2.6), as `Glyph::after` of the first of them.
 void space_scripts(std::vector<Glyph>& line);
 
 /// Returns the lower left corner of each glyph's square, metres, y down, in lines of glyphs. Squares of one line stand
