@@ -68,7 +68,7 @@ TEST(Knuckles, TheFitTakesASwellingOff) {
     std::vector<Station> stations;
     for (double x = 90; x <= 226; x += 8) stations.push_back({{x, 100}, std::min(18.0, 6 + 0.5 * (x - 90))});
     stations[9].half = 23, stations[9].centre.y = 103;
-    const FitOptions options{.fine_step = 2.5, .polish = 24};
+    const FitOptions options{.fine_step = 2.5, .knuckle_tries = 24};
     const std::vector<float> depths(target.wanted.inside.size(), 4.0f);
     const auto sharpness_of = [&](const std::vector<Station>& s) {
         const stroke::PlaneInk ink = draw_on_plane(s, hand, {}, options.fine_step, target.wanted.cell);
@@ -83,7 +83,7 @@ TEST(Knuckles, TheFitTakesASwellingOff) {
     const FitResult taken = take_off_knuckles({.stations = stations}, target, depths, hand, {}, options);
     EXPECT_GT(sharpness_of(stations), kKnuckle);
     EXPECT_LT(sharpness_of(taken.stations), 0.8 * sharpness_of(stations));  // a fifth is more than ripples of the edge
-    EXPECT_LE(taken.tries, options.polish);
+    EXPECT_LE(taken.tries, options.knuckle_tries);
 }
 
 }  // namespace

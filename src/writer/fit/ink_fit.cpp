@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/system/interrupt.h"
+#include "writer/fit/ink_score.h"
 #include "writer/fit/knuckle_fit.h"
 
 namespace tuft::writer {
@@ -27,8 +28,6 @@ constexpr float kDeepest = 24;           // units of depth that count
 struct Errors {
     std::vector<double> left, right, kick;  ///< units, [stations]
     double head = 0, tail = 0;              ///< units by which the ends are to be longer
-    double iou = 0;
-    double score = 0;  ///< overlap in which a wrong cell counts by its depth
 };
 
 /// How the sides and the head of a path are treated when it is corrected.
@@ -104,9 +103,10 @@ struct Reach {
     double too_short() const { return ink > wanted ? kNeedleBack * (wanted - ink) : 1e9; }
 };
 
-/// Compares the ink of a try with the target. `sides`: stations whose directions part left and right.
+/// Compares the ink of a try with the target. `coverage`: that of the target's cells; `sides`: stations whose
+/// directions part left and right.
 Errors errors_of(const std::vector<Station>& s, const std::vector<Station>& sides, const FitTarget& target,
-                 const std::vector<float>& depths, const stroke::PlaneInk& ink, const stroke::StrokeSamples& trace,
+                 const std::vector<float>& coverage, const stroke::PlaneInk& ink, const stroke::StrokeSamples& trace,
                  double unit) {
     const Cells& cells = target.wanted;
     const std::size_t n = s.size();
@@ -114,26 +114,20 @@ Errors errors_of(const std::vector<Station>& s, const std::vector<Station>& side
     Errors e{.left = std::vector<double>(n, 0), .right = std::vector<double>(n, 0), .kick = std::vector<double>(n, 0)};
     const double spacing = std::max(along.back() / static_cast<double>(n - 1), 1.0);
     const double part = cells.cell * cells.cell / spacing;
-    double both = 0, either = 0, deep = 0, head = 0, tail = 0;
+    double head = 0, tail = 0;
     Reach reach_head, reach_tail;
     const std::size_t touch = trace.samples.size() - 1 - n;  // samples before that of the first station
     const Vec2 out_head = -direction_at(sides, 0), out_tail = direction_at(sides, n - 1);
     for (int j = 0; j < cells.height; ++j)
         for (int i = 0; i < cells.width; ++i) {
             const Vec2 p = cells.centre(i, j);
-            const bool wanted = cells.at(i, j), there = ink.at(p * unit) > kTaken;
+            const std::size_t at = std::size_t(j) * cells.width + i;
+            const bool wanted = cells.inside[at] != 0, there = coverage[at] > kTaken;
             if (!wanted && !there) continue;
             reach_head.add(p - s[0].centre, out_head, wanted, there);
             reach_tail.add(p - s[n - 1].centre, out_tail, wanted, there);
-            const std::size_t at = std::size_t(j) * cells.width + i;
-            const double weight = target.weights.empty() ? 1 : static_cast<double>(target.weights[at]);
-            if (wanted && there) {
-                both += 1, either += 1;
-                continue;
-            }
-            either += weight;
-            deep += weight * static_cast<double>(depths[at]) / kRim;
-            const double error = weight * (wanted ? part : -part);
+            if (wanted && there) continue;
+            const double error = target.weight(at) * (wanted ? part : -part);
             const std::size_t k = nearest_station(s, p);
             if (k < 2 && glm::dot(p - s[0].centre, out_head) > 0) {
                 head += error * spacing;
@@ -163,8 +157,6 @@ Errors errors_of(const std::vector<Station>& s, const std::vector<Station>& side
     e.tail = tail / width(n - 1 - std::min<std::size_t>(2, n - 1));
     e.head = std::min(e.head, reach_head.too_short());
     e.tail = std::min(e.tail, reach_tail.too_short());
-    e.iou = either > 0 ? both / either : 0;
-    e.score = both > 0 ? both / (both + deep) : 0;
     return e;
 }
 
@@ -237,10 +229,12 @@ FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& ta
             const stroke::StrokeSamples trace = samples_of(next, hand, pace);
             const stroke::PlaneInk ink =
                 stroke::plane_ink(trace, hand.preset, hand.hold, step * hand.unit, target.wanted.cell * hand.unit);
+            const std::vector<float> coverage = coverage_by(ink, target.wanted, hand.unit);
+            const InkScore reached = score_of(target, depths, coverage);
             const Errors errors =
-                errors_of(next, manner.first_sides ? first : next, target, depths, ink, trace, hand.unit);
-            idle = errors.score > best.score + 1e-4 ? 0 : idle + 1;
-            if (errors.score > best.score) best.score = errors.score, best.iou = errors.iou, best.stations = next;
+                errors_of(next, manner.first_sides ? first : next, target, coverage, ink, trace, hand.unit);
+            idle = reached.score > best.score + 1e-4 ? 0 : idle + 1;
+            if (reached.score > best.score) best.score = reached.score, best.iou = reached.iou, best.stations = next;
             ++best.tries;
             correct(next, first, soft, errors, manner);
         }

@@ -5,6 +5,7 @@
 
 #include "stroke/drawing/plane_ink.h"
 #include "writer/fit/brush_hand.h"
+#include "writer/gesture/style.h"
 
 /// \file
 /// Correction of a path until the ink of a real brush covers a wanted area (iterative learning control). Called by the
@@ -15,21 +16,20 @@ namespace tuft::writer {
 struct FitTarget {
     Cells wanted;                ///< with a margin of at least 40 units
     std::vector<float> weights;  ///< of each cell's error, 0–1, as under another stroke; empty: 1
+
+    double weight(std::size_t cell) const { return weights.empty() ? 1 : static_cast<double>(weights[cell]); }
 };
 
 /// Options of `fit_stations`.
 struct FitOptions {
-    int tries = 5;         ///< drawings on the plane at most
-    double step = 5;       ///< units between poses
-    int fine_tries = 1;    ///< drawings after those, from the best of them on
-    double fine_step = 2;  ///< units; the ink of a tuft depends on the step, by .005 of the overlap from 5 to 1
-    double weak = 0.955;   ///< overlap below which another manner and another begin are tried
-    int idle = 4;          ///< tries without a gain after which it stops
-    int polish = 20;       ///< drawings at most, after those, that take knuckles off (knuckle_fit.h)
+    int tries = kFitTries;   ///< drawings on the plane at most
+    double step = 5;         ///< units between poses
+    int fine_tries = 1;      ///< drawings after those, from the best of them on
+    double fine_step = 2;    ///< units; the ink of a tuft depends on the step, by .005 of the overlap from 5 to 1
+    double weak = 0.955;     ///< overlap below which another manner and another begin are tried
+    int idle = 4;            ///< tries without a gain after which it stops
+    int knuckle_tries = 20;  ///< drawings at most, after those, that take knuckles off (knuckle_fit.h)
 };
-
-inline constexpr double kTaken = 0.5;  ///< coverage from which a cell is ink
-inline constexpr double kRim = 4;      ///< units of depth at which a wrong cell counts once
 
 /// Result of `fit_stations`.
 struct FitResult {

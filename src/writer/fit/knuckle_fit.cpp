@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/system/interrupt.h"
+#include "writer/fit/ink_score.h"
 #include "writer/gesture/knuckles.h"
 
 namespace tuft::writer {
@@ -18,7 +19,8 @@ constexpr double kLeastGain = 5e-4;
 /// A path as it is drawn.
 struct Drawing {
     std::vector<Station> stations;
-    double score = 0, iou = 0, value = -1e9;
+    InkScore reached;
+    double value = 0;                // what the changes raise
     std::vector<EdgeTurn> knuckles;  // sharpest first
 };
 
@@ -39,25 +41,9 @@ class KnuckleFit {
         Drawing out{.stations = std::move(stations)};
         const Cells& wanted = target_.wanted;
         const stroke::PlaneInk ink = draw_on_plane(out.stations, hand_, pace_, options_.fine_step, wanted.cell);
-        std::vector<float> coverage(wanted.inside.size());
-        double both = 0, either = 0, deep = 0;
-        for (int j = 0; j < wanted.height; ++j)
-            for (int i = 0; i < wanted.width; ++i) {
-                const std::size_t at = std::size_t(j) * wanted.width + i;
-                coverage[at] = static_cast<float>(ink.at(wanted.centre(i, j) * hand_.unit));
-                const bool there = coverage[at] > kTaken;
-                const bool is_wanted = wanted.inside[at] != 0;
-                if (is_wanted == there) {
-                    both += there, either += there;
-                    continue;
-                }
-                const double weight = weight_at(at);
-                either += weight;
-                deep += weight * static_cast<double>(depths_[at]) / kRim;
-            }
-        out.iou = either > 0 ? both / either : 0;
-        out.score = both > 0 ? both / (both + deep) : 0;
-        out.value = out.score;
+        const std::vector<float> coverage = coverage_by(ink, wanted, hand_.unit);
+        out.reached = score_of(target_, depths_, coverage);
+        out.value = out.reached.score;
         for (const EdgeTurn& turn : knuckles_of(wanted, coverage, turns_)) {
             if (is_under_another(turn.at)) continue;
             out.value -= kPrice * std::min(1.0, turn.curvature / (2 * kKnuckle));
@@ -68,19 +54,16 @@ class KnuckleFit {
         return out;
     }
 
-    bool may_draw() const { return draws_ < options_.polish; }
+    bool may_draw() const { return draws_ < options_.knuckle_tries; }
     int draws() const { return draws_; }
 
   private:
-    double weight_at(std::size_t cell) const {
-        return target_.weights.empty() ? 1 : static_cast<double>(target_.weights[cell]);
-    }
     bool is_under_another(const Vec2& p) const {
         const Cells& c = target_.wanted;
         const Vec2 cell = glm::floor((p - c.lo) / c.cell);
         const auto i = static_cast<int>(cell.x), j = static_cast<int>(cell.y);
         if (i < 0 || j < 0 || i >= c.width || j >= c.height) return false;
-        return weight_at(std::size_t(j) * c.width + static_cast<std::size_t>(i)) < 1;
+        return target_.weight(std::size_t(j) * c.width + static_cast<std::size_t>(i)) < 1;
     }
 
     const FitTarget& target_;
@@ -135,7 +118,7 @@ std::vector<std::pair<std::size_t, Change>> changes_at(const std::vector<Station
 
 FitResult take_off_knuckles(FitResult fitted, const FitTarget& target, const std::vector<float>& depths,
                             const BrushHand& hand, const Pace& pace, const FitOptions& options) {
-    if (options.polish <= 0 || fitted.stations.size() < 4) return fitted;
+    if (options.knuckle_tries <= 0 || fitted.stations.size() < 4) return fitted;
     KnuckleFit fit(target, depths, hand, pace, options);
     Drawing best = fit.draw(fitted.stations);
     for (int round = 0; round < kRounds && !best.knuckles.empty(); ++round) {
@@ -149,7 +132,7 @@ FitResult take_off_knuckles(FitResult fitted, const FitTarget& target, const std
             }
         if (best.value < before + kLeastGain) break;
     }
-    if (best.value > -1e8) fitted.stations = best.stations, fitted.iou = best.iou, fitted.score = best.score;
+    fitted.stations = best.stations, fitted.iou = best.reached.iou, fitted.score = best.reached.score;
     fitted.tries += fit.draws();
     return fitted;
 }

@@ -12,8 +12,8 @@ namespace tuft::writer {
 ///
 ///     score − 0.02 Σ severity,  severity = min(1, curvature / (2 · kKnuckle)) for each knuckle,
 ///
-/// `score` as in `fit_stations`. Knuckles under other strokes do not count. At most `options.polish` drawings in steps
-/// of `options.fine_step`; one where the stroke has no knuckle. Deterministic.
+/// `score` as in `fit_stations`. Knuckles under other strokes do not count. At most `options.knuckle_tries` drawings in
+/// steps of `options.fine_step`; one where the stroke has no knuckle. Deterministic.
 FitResult take_off_knuckles(FitResult fitted, const FitTarget& target, const std::vector<float>& depths,
                             const BrushHand& hand, const Pace& pace, const FitOptions& options);
 

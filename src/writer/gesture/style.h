@@ -8,6 +8,8 @@
 /// Styles of writing: parameters of a hand, from a TOML file. Called by the writer.
 namespace tuft::writer {
 
+inline constexpr int kFitTries = 5;  ///< drawings on the plane by which a stroke is fitted, at most
+
 /// How a hand's strokes get their width.
 enum class HandKind {
     brush,  ///< heads, travel, turns, hooks and ends of a pointed brush, by class of stroke
@@ -24,7 +26,7 @@ struct Style {
     double speed = 0.06;                         ///< m/s at that side; proportional to it
     double bend_radius = 150;                    ///< units, of the two-thirds law
     double ends = 0.3, ease = 40;                ///< part of the speed at ends; units over which it rises
-    int tries = 5;                               ///< of the fit of a stroke
+    int tries = kFitTries;                       ///< of the fit of a stroke
     double half_width = 18;                      ///< units; of `line`, and the edge of `nib`
     double link = 0;                             ///< units: gaps up to this length are drawn as a thin line
     double link_half = 5;                        ///< units, half width of that line

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "writer/fit/ink_fit.h"
+
+/// \file
+/// How well ink covers a wanted area. Called by the parts of the fit.
+namespace tuft::writer {
+
+inline constexpr double kTaken = 0.5;  ///< coverage above which a cell is ink
+
+/// Agreement of ink with a wanted area; both are 1 where they are the same.
+struct InkScore {
+    double iou = 0;    ///< B / (B + Σ w)
+    double score = 0;  ///< B / (B + Σ w d / 4)
+};
+
+/// Returns the coverage by ink at the centres of cells. [cells] `unit`: metres.
+std::vector<float> coverage_by(const stroke::PlaneInk& ink, const Cells& cells, double unit);
+
+/// Returns the agreement of ink with a target: B cells are covered rightly, and the sums are over those covered
+/// wrongly, each of weight w and d units from the edge. `depths`, `coverage`: [cells of the target].
+InkScore score_of(const FitTarget& target, std::span<const float> depths, std::span<const float> coverage);
+
+}  // namespace tuft::writer
