@@ -138,7 +138,8 @@ const Vec3 kOwn = render::linear_colour(210, 0, 140), kOther = render::linear_co
 void write_guide_picture(const fs::path& path, const GuideRequest& request, const std::vector<PlacedPiece>& pieces,
                          int number, const View& view, Console& console) {
     const stroke::Model& model = request.project.model;
-    render::Image image = draw_picture({.model = model, .painting = &request.painting, .view = view}, console);
+    render::Image image =
+        draw_picture({.model = model, .painting = &request.painting, .view = view, .sketch = true}, console);
     const render::Camera camera = camera_of(view, *model.mesh);
     PictureOverlay overlay(image, camera, *model.query);
     for (const bool own : {false, true})
