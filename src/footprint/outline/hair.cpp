@@ -59,10 +59,11 @@ struct BristlePlace {
 
     BristlePlace(const brush::Bundles& bundles, const Vec2& place, int branches)
         : whole(place), part(brush::in_branch(bundles, place, branches)) {}
-    const Vec2* at(const Trail& trail, std::size_t i) const {
+    const Vec2* at(const Trail& trail, std::size_t i) const& {
         if (i >= trail.trunk) return &whole;
         return part.branch == trail.branch ? &part.place : nullptr;
     }
+    const Vec2* at(const Trail& trail, std::size_t i) const&& = delete;  // of no temporary
 };
 
 /// Noise in [-1, 1] along a line, smooth over one unit.
@@ -336,8 +337,10 @@ void for_each_bundle(const Trail& trail, const brush::Bundles& bundles, int bran
                                           [](const Cut& p, const Cut& q) { return p.overlap() < q.overlap(); });
     const auto i = static_cast<std::size_t>(deepest - trail.cuts.begin());
     const double length = std::max(std::abs(trail.along.front() - trail.along.back()), kLeastLength);
-    for (std::size_t k = 0; k < bundles.place.size(); ++k)
-        if (const Vec2* at = BristlePlace(bundles, bundles.place[k], branches).at(trail, i)) f(k, i, *at, length);
+    for (std::size_t k = 0; k < bundles.place.size(); ++k) {
+        const BristlePlace place(bundles, bundles.place[k], branches);
+        if (const Vec2* at = place.at(trail, i)) f(k, i, *at, length);
+    }
 }
 
 }  // namespace
