@@ -5,6 +5,7 @@
 #include "brush/rod/rod_energy.h"
 #include "brush/rod/rod_law.h"
 #include "brush/rod/rod_points.h"
+#include "core/simd.h"
 
 namespace tuft::brush::rod {
 
@@ -118,7 +119,9 @@ bool all_clear(const Frozen& frozen, int k, const Evaluation& at) {
     return true;
 }
 
-double add_contact(const Frozen& frozen, int p, bool derivatives, Evaluation& out) {
+namespace {
+
+TUFT_CLONES double add_point(const Frozen& frozen, int p, bool derivatives, Evaluation& out) {
     const Law& law = *frozen.law;
     const Stencil& at = frozen.stencil[p];
     const Vec3 x = at.at(out.node);
@@ -165,6 +168,12 @@ double add_contact(const Frozen& frozen, int p, bool derivatives, Evaluation& ou
         });
     }
     return energy;
+}
+
+}  // namespace
+
+double add_contact(const Frozen& frozen, int p, bool derivatives, Evaluation& out) {
+    return add_point(frozen, p, derivatives, out);
 }
 
 Obstacle met_by(const Frozen& frozen, int p, const Recycled<Vec3>& node) {

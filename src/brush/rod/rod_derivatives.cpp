@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "brush/rod/rod_energy.h"
+#include "core/simd.h"
 
 namespace tuft::brush::rod {
 
@@ -139,7 +140,7 @@ void differentiate_twice(const Frozen& frozen, const Shape& shape, const Evaluat
 namespace {
 
 /// Eliminates the steps from tip to root into `work`. Returns false where a pivot is not positive definite.
-bool eliminate(const QuadraticModel& model, double damping, Elimination& work) {
+TUFT_CLONES bool eliminate(const QuadraticModel& model, double damping, Elimination& work) {
     const auto& [rod, shape, at, d] = model;
     const int n = rod.segments();
     work.gain.resize(n);

@@ -40,6 +40,7 @@ class PieceOverEdge {
   private:
     LineDistance line_at(double s) const;
     Shortened at(double s) const;
+    double surely_short(const Shortened& from) const;
     Shortened between(Shortened low, Shortened high) const;
 
     const Law& law_;
@@ -74,10 +75,20 @@ Shortened PieceOverEdge::at(double s) const {
     return out;
 }
 
+// How much less the piece may be shortened than at `from` with a miss that is surely positive: the force along the hair
+// is at most that of the contact and of the film, and the contact grows no faster than hair goes along itself.
+double PieceOverEdge::surely_short(const Shortened& from) const {
+    constexpr double kRounding = 1e-9;
+    const double along = glm::length(inwards), pull = law_.adhesion * piece_.weight;
+    const double spare = from.s / piece_.compliance - (from.push.force + pull) * along;
+    const double stiffest = (law_.stiffness + law_.core_stiffness) * piece_.weight;
+    return std::max(0.0, (1 - kRounding) * spare / (1 / piece_.compliance + stiffest * along * along));
+}
+
 // Bracketed from outside, where hair that comes from its root meets the surface.
 Shortened PieceOverEdge::stand() const {
-    Shortened low = at(0);
-    if (piece_.compliance <= 0 || low.push.force <= 0) return low;
+    const Shortened whole = at(0);
+    if (piece_.compliance <= 0 || whole.push.force <= 0) return whole;
     constexpr int kSteps = 12;
     const double step = 3 * law_.end_compliance / kSteps;
     Shortened high = at(kSteps * step);
@@ -87,10 +98,16 @@ Shortened PieceOverEdge::stand() const {
     const double off = -high.depth - law_.adhesion_range - 1e-9;
     const int clear = std::clamp(static_cast<int>(off / step), 0, kSteps - 1);
     if (clear > 0) high = at((kSteps - clear) * step);
-    for (int k = kSteps - clear; k-- > 0;) {
-        low = at(k * step);
-        if (low.miss <= 0) break;
+    Shortened low = high;
+    for (int k = kSteps - clear; k > 0;) {
+        const int next = std::max(0, k - 1 - static_cast<int>(surely_short(high) / step));
+        low = next > 0 ? at(next * step) : whole;
+        if (low.miss <= 0) {
+            if (next + 1 < k) high = at((next + 1) * step);
+            break;
+        }
         high = low;
+        k = next;
     }
     return low.miss >= 0 ? low : between(low, high);
 }
