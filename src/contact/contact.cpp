@@ -25,7 +25,7 @@ struct Step {
     double pad = 0;           // metres of hair or foam, pressed flat under the ferrule
     double near = 0;          // metres: farther than this nothing of the tuft can touch
     NodeContact root;         // of the ferrule's mouth
-    Vec3 tip{0};              // predicted, at `pose`
+    Recycled<Vec3> nodes;     // predicted, at `pose`
     bool tip_jumped = false;  // the tip went so far that its hair did not slide there
 };
 
@@ -146,41 +146,46 @@ bool are_still(std::span<const Vec3> before, std::span<const Vec3> now, const Op
     return true;
 }
 
+/// A tuft that was bent against planes.
+struct Bent {
+    brush::TuftState state;
+    Recycled<ContactPlane> planes;   // of the last solve
+    Recycled<Vec3> nodes;            // where they lie now, as `brush::predicted_nodes`
+    Recycled<NodeContact> contacts;  // of the spines' nodes where they lie now, or none
+};
+
 /// Steps a tuft whose nodes are where they came to rest, on the planes of that rest. Returns nothing, and leaves the
 /// tuft as it was, where they do not stay there.
-std::optional<brush::TuftState> step_at_rest(const Step& w, brush::Tuft& tuft, double dt, const Memory& memory,
-                                             Recycled<NodeContact>& contacts) {
+std::optional<Bent> step_at_rest(const Step& w, brush::Tuft& tuft, double dt, const Memory& memory) {
     thread_local brush::TuftBend before;  // keeps its memory
     before = tuft;
-    brush::TuftState state = brush::step(tuft, w.pose, memory.rest.planes, dt, memory.rest.walls);
-    const Recycled<Vec3> now = brush::predicted_nodes(tuft, w.pose);
-    if (!state.converged || !are_still(memory.rest.nodes, now, w.options)) {
+    Bent bent{.state = brush::step(tuft, w.pose, memory.rest.planes, dt, memory.rest.walls)};
+    bent.nodes = brush::predicted_nodes(tuft, w.pose);
+    if (!bent.state.converged || !are_still(memory.rest.nodes, bent.nodes, w.options)) {
         static_cast<brush::TuftBend&>(tuft) = before;
         return {};
     }
     KnownContacts known{.contacts = memory.contacts};
     if (memory.rest.verified) known.nodes = memory.rest.nodes, known.still = kStill * w.options.refresh_error;
-    contacts = find_tuft_contacts(w, before, now, known);
-    contacts.resize(memory.contacts.size());
-    return state;
+    bent.planes = memory.rest.planes;
+    bent.contacts = find_tuft_contacts(w, before, bent.nodes, known);
+    bent.contacts.resize(memory.contacts.size());
+    return bent;
 }
 
 /// Solves, looks where the nodes came to rest, and solves again where their planes were off.
-/// `planes`: those of the last solve. `contacts`: of the spines where they lie now, or empty.
-brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memory, Recycled<ContactPlane>& planes,
-                       Recycled<NodeContact>& contacts) {
+Bent solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memory) {
     const Recycled<double> radii = node_radii(tuft);
     const double root_radius = radii[tuft.trunk().rest_radius.size() - 1];
     const bool was_split = tuft.split;
-    const Recycled<Vec3> nodes = brush::predicted_nodes(tuft, w.pose);
+    const Recycled<Vec3>& nodes = w.nodes;
     Rest& rest = memory.rest;
     const bool still = are_still(rest.nodes, nodes, w.options);
     if (still && (rest.verified || rest.searches >= kMostRestSearches)) {
-        if (auto state = step_at_rest(w, tuft, dt, memory, contacts)) {
-            planes = rest.planes;
-            return std::move(*state);
-        }
+        if (auto bent = step_at_rest(w, tuft, dt, memory)) return std::move(*bent);
     }
+    Bent out;
+    auto& [state, planes, now, contacts] = out;
     Recycled<NodeContact> predicted = find_tuft_contacts(w, tuft, nodes, {.contacts = memory.contacts});
     for (const NodeContact& c : predicted) planes.push_back(c.wedge);
     const Recycled<ContactPlane> walls = find_side_walls(w, tuft, predicted);
@@ -192,9 +197,9 @@ brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memo
     thread_local brush::StepStart start;
     before = tuft;
     start.known = start.in_parts = false;
-    brush::TuftState state = brush::step(tuft, w.pose, planes, dt, walls, &start);
+    state = brush::step(tuft, w.pose, planes, dt, walls, &start);
+    now = brush::predicted_nodes(tuft, w.pose);
     for (int pass = 0; pass < w.options.max_refreshes && state.touching; ++pass) {
-        const Recycled<Vec3> now = brush::predicted_nodes(tuft, w.pose);
         if (tuft.split != was_split && now.size() < nodes.size()) break;
         const auto compared = std::span(now).first(nodes.size());
         const Recycled<NodeContact> found =
@@ -216,10 +221,12 @@ brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memo
             break;
         }
         std::swap(planes, fresh);  // `fresh` now holds those of the solve before
+        Recycled<Vec3> nodes_before = std::move(now);
         std::swap(static_cast<brush::TuftBend&>(tuft), solved);
         static_cast<brush::TuftBend&>(tuft) = before;
         brush::TuftState former = std::move(state);
         state = brush::step(tuft, w.pose, planes, dt, walls, &start);
+        now = brush::predicted_nodes(tuft, w.pose);
         state.iterations += former.iterations;
         state.work += former.work;
         // Between two faces of a rim the planes at the new places may leave no rest: the solve ends anywhere, with a
@@ -228,6 +235,7 @@ brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memo
             former.iterations = state.iterations;
             former.work = state.work;
             planes = std::move(fresh);
+            now = std::move(nodes_before);
             std::swap(static_cast<brush::TuftBend&>(tuft), solved);
             state = std::move(former);
             break;
@@ -236,42 +244,41 @@ brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memo
     if (state.converged) {
         rest.planes = planes;
         rest.walls = walls;
-        rest.nodes = brush::predicted_nodes(tuft, w.pose);
+        rest.nodes = now;
     }
     if (contacts.empty()) predicted.resize(radii.size());
     memory.contacts = contacts.empty() ? std::move(predicted) : contacts;
-    return state;
+    return out;
 }
 
 /// One plane for all nodes: the tip snapped to the weighted mean of the nearest vertices.
-brush::TuftState solve_by_vertices(const Step& w, brush::Tuft& tuft, double dt, Result& result) {
-    const Vec3 tip = brush::predicted_nodes(tuft, w.pose).front();
+Bent solve_by_vertices(const Step& w, brush::Tuft& tuft, double dt, Sphere& sphere) {
+    Bent out;
+    const Vec3 tip = w.nodes.front();
     const Vec3 holder = w.pose.position - tuft.preset.length * w.pose.axis();
     const WeightedDistance d = weighted_distance(w.surface, tip, holder, w.options.nearest_vertices);
-    if (!d.found) return brush::step(tuft, w.pose, {}, dt);
-    const ContactPlane plane{snap_tip(tip, d), d.normal};
-    result.planes.assign(1, plane);
-    brush::TuftState state = brush::step(tuft, w.pose, result.planes, dt);
-    result.sphere = expand_ball(outline_points(state));
-    return state;
+    if (d.found) out.planes.assign(1, {snap_tip(tip, d), d.normal});
+    out.state = brush::step(tuft, w.pose, out.planes, dt);
+    out.nodes = brush::predicted_nodes(tuft, w.pose);
+    if (d.found) sphere = expand_ball(outline_points(out.state));
+    return out;
 }
 
 /// Contacts of every section of every branch of the solved tuft. Of a whole tuft these are the contacts of the rod's
 /// nodes, from which the sections' centres differ along the planes' normals, and along the surface by what friction
-/// drags the sides. `trunk` holds them if they are known.
+/// drags the sides. `solved`, of which `trunk` holds these contacts if they are known, lies at `nodes`.
 Recycled<Recycled<NodeContact>> find_section_contacts(const Step& w, const brush::Tuft& solved,
-                                                      const brush::TuftState& tuft, Recycled<NodeContact> trunk) {
+                                                      const brush::TuftState& tuft, std::span<const Vec3> nodes,
+                                                      Recycled<NodeContact> trunk) {
     Recycled<Recycled<NodeContact>> out;
     if (tuft.branches.size() == 1) {
-        const Recycled<Vec3> nodes = brush::predicted_nodes(solved, w.pose);
         const std::size_t count = tuft.branches[0].sections.size();
         if (trunk.size() != count && nodes.size() >= count)
-            trunk = find_chain_contacts(w.surface, w.root, std::span(nodes).first(count), w.near, w.search);
+            trunk = find_chain_contacts(w.surface, w.root, nodes.first(count), w.near, w.search);
         out.push_back(std::move(trunk));
         return out;
     }
     if (tuft.wide) {
-        const Recycled<Vec3> nodes = brush::predicted_nodes(solved, w.pose);
         if (trunk.size() != nodes.size()) trunk = find_tuft_contacts(w, solved, nodes);
         for (std::size_t b = 0, first = 0; b < tuft.branches.size(); ++b) {
             const auto begin = trunk.begin() + static_cast<long>(first);
@@ -458,23 +465,25 @@ void lower_tuft(brush::Tuft& tuft, const Step& w, Memory& memory) {
 void step_in_air(brush::Tuft& tuft, const Step& w, const StepInput& input, Result& result) {
     result.tuft = brush::step(tuft, w.pose, {}, input.dt);
     result.inside = std::max(result.inside, depth_inside(w.surface, input.pose.position));
-    const auto nearest = w.surface.closest_point(w.tip);
+    const auto nearest = w.surface.closest_point(w.nodes.front());
     result.distance = nearest ? nearest->distance : std::numeric_limits<double>::infinity();
 }
 
 /// Bends the tuft on the surface and finds frame, planes and travel.
 void step_on_surface(brush::Tuft& tuft, Step& w, double dt, Memory& memory, Result& result) {
     const brush::Preset& preset = tuft.preset;
-    Recycled<NodeContact> spines;
-    result.tuft = w.options.method == Method::exact ? solve(w, tuft, dt, memory, result.planes, spines)
-                                                    : solve_by_vertices(w, tuft, dt, result);
-    const Recycled<Recycled<NodeContact>> contacts = find_section_contacts(w, tuft, result.tuft, std::move(spines));
+    Bent bent =
+        w.options.method == Method::exact ? solve(w, tuft, dt, memory) : solve_by_vertices(w, tuft, dt, result.sphere);
+    result.tuft = std::move(bent.state);
+    result.planes = std::move(bent.planes);
+    const Recycled<Recycled<NodeContact>> contacts =
+        find_section_contacts(w, tuft, result.tuft, bent.nodes, std::move(bent.contacts));
     for (const Recycled<NodeContact>& branch : contacts) {
         result.branch_planes.emplace_back();
         for (const NodeContact& c : branch) result.branch_planes.back().push_back(c.plane);
     }
     constexpr double kJump = 0.2;  // of the length, in one sample and beside the hand's own motion
-    w.tip_jumped = glm::distance(w.tip, brush::predicted_nodes(tuft, w.pose).front()) > kJump * preset.length;
+    w.tip_jumped = glm::distance(w.nodes.front(), bent.nodes.front()) > kJump * preset.length;
     find_frame(w, contacts, memory, result);
     if (w.options.method == Method::vertices && result.triangle != kNone && result.tuft.touching) {
         const Vec3 holder = w.pose.position - preset.length * w.pose.axis();
@@ -494,17 +503,17 @@ Result take_step(brush::Tuft& tuft, const mesh::SurfaceQuery& surface, Memory& m
         1.2 * preset.radius * std::max(1.0, preset.flatten_max) + 0.5 * preset.width / std::max(1, preset.spines);
     const bool near = overlap(obb_of(nodes, thick + options.tolerance), obb_of(surface.mesh().bounds));
 
-    Step w{surface, input.pose, options, {}, preset.radius, ferrule_pad(preset), 0, {}};
+    Step w{surface, input.pose, options, {}, preset.radius, ferrule_pad(preset), 0, {}, std::move(nodes)};
     w.search.smooth = &memory.smooth;
     w.search.reach = 2 * preset.length + thick + preset.width;
     w.near = 1.2 * preset.radius + options.tolerance + 1e-3;
     if (near) {
         w.root = find_root_contact(w, memory, preset.length);
         result.inside = move_off_surface(w);
-        if (result.inside > 0 && !memory.touching && !input.lowers) lower_tuft(tuft, w, memory);
-        if (w.pose.position != input.pose.position) nodes = brush::predicted_nodes(tuft, w.pose);
+        const bool lowers = result.inside > 0 && !memory.touching && !input.lowers;
+        if (lowers) lower_tuft(tuft, w, memory);
+        if (lowers || w.pose.position != input.pose.position) w.nodes = brush::predicted_nodes(tuft, w.pose);
     }
-    w.tip = nodes.front();
     const bool reachable =
         near && w.root.triangle != kNone && w.root.height < preset.length + w.near + 0.5 * preset.width;
     if (!reachable) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/ease.h"
 #include "haptic/device/limits.h"
@@ -42,7 +43,7 @@ void HairSolver::set_ink(double wetness, double ink_left) {
 
 void HairSolver::restart(const RootPose& pose) {
     const brush::Pose at{pose.position, pose.rotation, 0};
-    memory_ = {};
+    memory_ = {.smooth = std::move(memory_.smooth)};
     if (tuft_.posed) brush::step(tuft_, at, {}, 0);  // the hair comes through the air, as it sprang back
     const contact::NodeContactOptions reach{.reach = options_.handle_length};
     const Vec3 free = contact::find_outside_point(surface_, pose.position, -at.axis(), reach);
