@@ -16,6 +16,7 @@ constexpr double kFilled = 0.2;                ///< wetness from which the film 
 constexpr double kThinnest = 1e-3;             ///< m, of hair that neighbours slide past
 constexpr double kHairPart = 0.55;             ///< φ, volume of hair in a packed tuft
 constexpr double kWaterWeight = 9810;          ///< ρ g, N/m³
+constexpr int kLeastIterations = 30;           ///< of a part of a step
 constexpr double kTouch = 0.8862269254527580;  ///< √π/2: half the pitch of a strip over its ellipse's semi-axis
 
 /// The part of `all` that belongs to each spine, `per` for each node; the same one for all, or none, where `all` holds
@@ -85,9 +86,9 @@ struct Coupled {
     Recycled<Recycled<rod::Wall>> walls;
     Recycled<rod::CoupledPair> pairs;
 
-    /// Bounds of one solve, and where it starts.
+    /// Of one solve, where it starts, and what part of the iterations of a step it may take.
     struct Start {
-        int most_iterations = 0;
+        int parts = 1;                     ///< of the step's motion
         const StepStart* found = nullptr;  ///< null: extrapolated
     };
 
@@ -102,7 +103,8 @@ struct Coupled {
         for (const Spine& spine : tuft.spines) {
             const std::size_t count = spine.rest_radius.size();
             laws.push_back(law_of(p, tuft.wetness, 1 / spine.share, dt));
-            laws.back().max_iterations = std::min(laws.back().max_iterations, start.most_iterations);
+            int& most = laws.back().max_iterations;
+            if (start.parts > 1) most = std::max(kLeastIterations, most / start.parts);
             obstacles.push_back(obstacles_of_wide(p, spine, NodeAxes(spine.memory), part_of(planes, first, count)));
             walls.push_back(flank_walls(p, spine, pose.rotation, part_of(beside, 2 * first, 2 * count), tuft.wetness));
             first += count;
@@ -339,8 +341,6 @@ Pose take_start(const StepStart& start, Tuft& tuft, double& dt, Followed& passed
 /// Moves the ferrule to `m.to` in parts that are small enough to be followed.
 Followed follow_pose(Tuft& tuft, const Motion& m, Coupled& coupled, StepStart* start) {
     const Preset& p = tuft.preset;
-    const rod::Law law = law_of(p, tuft.wetness, 1, m.dt);
-    const int most = law.max_iterations;
     Followed out;
     out.slip.resize(tuft.spines.size());
     Motion last = m;
@@ -354,14 +354,14 @@ Followed follow_pose(Tuft& tuft, const Motion& m, Coupled& coupled, StepStart* s
         for (int k = 1; k < parts; ++k) {
             last.to = between(m.from, m.to, static_cast<double>(k) / parts);
             // With all passes: a blade that lands with too little friction between its spines falls to its side.
-            follow_part(tuft, last, {std::max(30, most / parts)}, coupled, out);
+            follow_part(tuft, last, {parts}, coupled, out);
             last.from = last.to;
         }
         last.to = m.to;
         if (start) start->in_parts = parts > 1;
         if (start && parts > 1) note_start(tuft, last.from, last.dt, out, *start);
     }
-    follow_part(tuft, last, {most, start && start->known ? start : nullptr}, coupled, out);
+    follow_part(tuft, last, {1, start && start->known ? start : nullptr}, coupled, out);
     return out;
 }
 

@@ -51,9 +51,9 @@ struct SolvedSpines {
     double film_range = 0;                        ///< m, gap at which the wet film between two spines breaks
 };
 
-/// Moves all spines from the tuft's pose to `to` in small steps and solves them there over `dt` seconds. `planes`,
-/// `walls` and `start` as in `step`.
+/// Moves all spines from the tuft's pose to `to`, in parts where it is far (`count_substeps`), and solves them there
+/// over `dt` seconds. `planes`, `walls` and `start` as in `step`.
 SolvedSpines solve_spines(Tuft& tuft, const Pose& to, std::span<const ContactPlane> planes,
-                          std::span<const ContactPlane> walls, double dt, StepStart* start = nullptr);
+                          std::span<const ContactPlane> walls, double dt, StepStart* start);
 
 }  // namespace tuft::brush
