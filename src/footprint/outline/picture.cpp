@@ -12,12 +12,6 @@
 namespace tuft::footprint {
 namespace {
 
-TUFT_CLONES void pack_rows(const std::uint8_t* __restrict low, const std::uint8_t* __restrict high,
-                           std::uint16_t* __restrict out, std::size_t n) {
-#pragma omp simd
-    for (std::size_t i = 0; i < n; ++i) out[i] = static_cast<std::uint16_t>(low[i] | high[i] << 8);
-}
-
 /// Bits that all, and bits that any of four rows have set, column by column.
 TUFT_CLONES void column_bits(const std::array<const std::uint8_t*, 4>& rows, int n, std::uint8_t* __restrict all,
                              std::uint8_t* __restrict any) {
@@ -139,12 +133,6 @@ void Discs::reserve_one() {
 
 Cover Discs::cover(std::size_t i) const {
     return (found_[i] >> 16) == 0 ? Cover::empty : (found_[i] & 0xffff) == 0 ? Cover::full : Cover::mixed;
-}
-
-void pack_picture(const Footprint& footprint, std::vector<std::uint16_t>& pairs) {
-    const auto row = static_cast<std::size_t>(footprint.width);
-    pairs.resize(row * (footprint.height - 1));
-    pack_rows(footprint.coverage.data(), footprint.coverage.data() + row, pairs.data(), pairs.size());
 }
 
 void transpose(std::span<const std::uint8_t> cells, int width, int height, Recycled<std::uint8_t>& turned) {

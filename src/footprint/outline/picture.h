@@ -9,16 +9,12 @@
 #include "footprint/outline/footprint.h"
 
 /// \file
-/// The footprint's picture packed for the stamp kernel, and the coverage of its blocks. Used by `footprint/stamp`.
+/// The footprint's picture by columns, and the coverage of its blocks. Used by `footprint/stamp`.
 namespace tuft::footprint {
 
 /// Instruction sets of the kernels; all give the same bits.
 enum class Isa : std::uint8_t { baseline, avx2, avx512 };
 Isa best_isa();  ///< of this machine
-
-/// Packs each two vertically adjacent cells into a word, the lower one in the low byte: [(height − 1) width]. Two
-/// adjacent words hold the four corners of a square.
-void pack_picture(const Footprint& footprint, std::vector<std::uint16_t>& pairs);
 
 /// Transposes the picture [width * height] to [height * width]. Cost: 0.1 ns a cell.
 void transpose(std::span<const std::uint8_t> cells, int width, int height, Recycled<std::uint8_t>& turned);

@@ -269,7 +269,7 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     }
     jobs.width = footprint.width - 1;
     jobs.height = footprint.height - 1;
-    pack_picture(footprint, jobs.pairs);
+    jobs.cells = footprint.coverage;
     return jobs;
 }
 

@@ -77,20 +77,20 @@ struct TileJob {
 };
 
 /// A pose of the picture within the stamp: cell coordinates (fu, fv) of a texel map to (xu fu + xv fv + du, yu fu +
-/// yv fv + dv) of the packed picture.
+/// yv fv + dv) of the picture.
 struct SubPose {
     float xu = 1, xv = 0, yu = 0, yv = 1;  ///< rotation and shear
     float du = 0, dv = 0;                  ///< cells
 };
 
-/// A planned stamp: its picture packed for the kernel and the tiles it may touch.
+/// A planned stamp: its picture and the tiles it may touch.
 struct StampJobs {
-    int width = 0, height = 0;         ///< squares between four cells: the picture's size less one
-    std::vector<std::uint16_t> pairs;  ///< see `pack_picture`
-    float gain = 1;                    ///< exposure of a full cell
-    std::vector<SubPose> sub_poses;    ///< evenly spaced over the motion
-    Vec2f reach_lo{0}, reach_hi{0};    ///< cells: bounds of the picture in all sub-poses
-    ClusterFrame stamp_frame;          ///< serves all clusters when not piecewise
+    int width = 0, height = 0;       ///< ≥ 1, squares between four cells: the picture's size less one
+    Recycled<std::uint8_t> cells;    ///< [(height + 1) (width + 1)], 255 = 1
+    float gain = 1;                  ///< exposure of a full cell
+    std::vector<SubPose> sub_poses;  ///< evenly spaced over the motion
+    Vec2f reach_lo{0}, reach_hi{0};  ///< cells: bounds of the picture in all sub-poses
+    ClusterFrame stamp_frame;        ///< serves all clusters when not piecewise
     /// One for each cluster reached, by slot; without a position where discrepancy is below `leave`.
     std::vector<ClusterFrame> frames;
     std::vector<TileJob> tiles;  ///< by slot

@@ -11,8 +11,8 @@ namespace {
 
 using atlas::kTileTexels;
 
-/// Neighbouring words of the picture, read at once from where they lie.
-using TwoPairs [[gnu::may_alias, gnu::aligned(2)]] = std::uint32_t;
+/// Four cells in a row of the picture, read at once from where they lie.
+using FourCells [[gnu::may_alias, gnu::aligned(1)]] = std::uint32_t;
 
 constexpr float kOutside = -1e9f;  // cells; in no picture
 
@@ -69,7 +69,7 @@ struct Task {
     const StampJobs& jobs;
     const ClusterFrame* frames;
     const SubPose* poses;
-    const std::uint16_t* pairs;
+    const std::uint8_t* cells;
     std::uint32_t n_frames, n_poses;
     const std::uint8_t* cluster;  ///< of the tile, as the rest
     const float *px, *py, *pz, *nx, *ny, *nz;
@@ -162,7 +162,7 @@ template <int lanes, bool last>
                                             const PicturePositions& positions, float* __restrict sum,
                                             ExposureScale<lanes>& finish) {
     const StampJobs& jobs = task.jobs;
-    const std::uint16_t* __restrict pairs = task.pairs;
+    const std::uint8_t* __restrict cells = task.cells;
     const int stride = jobs.width + 1;
     // The last coordinates inside: below the number of cells.
     const float last_x = static_cast<float>(jobs.width) * (1 - 1e-6f);
@@ -190,7 +190,14 @@ template <int lanes, bool last>
         }
     }
     const int n = runs.count * lanes;
-    for (int t = 0; t < n; ++t) four[t] = *reinterpret_cast<const TwoPairs*>(pairs + cell[t]);
+    // The corners of a square: two cells of a row, and two of the next, read from two cells before them on, since what
+    // lies beyond the last cell is not the picture's.
+    const std::uint8_t* __restrict next_row = cells + stride - 2;
+    for (int t = 0; t < n; ++t) {
+        const std::uint32_t low = *reinterpret_cast<const FourCells*>(cells + cell[t]);
+        const std::uint32_t high = *reinterpret_cast<const FourCells*>(next_row + cell[t]);
+        four[t] = (low & 0x0000ffffu) | (high & 0xffff0000u);
+    }
     for (int run = 0; run < runs.count; ++run) {
         float* __restrict to = sum + runs.start[run];
         const int at = run * lanes;
@@ -199,8 +206,8 @@ template <int lanes, bool last>
             const std::uint32_t q = four[at + t];
             const float fx = part_x[at + t], fy = part_y[at + t];
             const float q00 = static_cast<float>(static_cast<int>(q & 255));
-            const float q01 = static_cast<float>(static_cast<int>((q >> 8) & 255));
-            const float q10 = static_cast<float>(static_cast<int>((q >> 16) & 255));
+            const float q10 = static_cast<float>(static_cast<int>((q >> 8) & 255));
+            const float q01 = static_cast<float>(static_cast<int>((q >> 16) & 255));
             const float q11 = static_cast<float>(static_cast<int>(q >> 24));
             const float low = q00 + fx * (q10 - q00), high = q01 + fx * (q11 - q01);
             const float value = low + fy * (high - low);
@@ -344,7 +351,7 @@ Isa best_isa() {
 
 bool evaluate_tile(const atlas::TexelMap& texels, const StampJobs& jobs, const TileJob& job, Unpacked& unpacked,
                    std::span<float, kTileTexels> exposure) {
-    if (jobs.pairs.empty() || jobs.sub_poses.empty()) {
+    if (jobs.cells.empty() || jobs.sub_poses.empty()) {
         std::fill(exposure.begin(), exposure.end(), 0.0f);
         return false;
     }
@@ -359,7 +366,7 @@ bool evaluate_tile(const atlas::TexelMap& texels, const StampJobs& jobs, const T
     const Task task{jobs,
                     jobs.frames.data() + job.first,
                     jobs.sub_poses.data(),
-                    jobs.pairs.data(),
+                    jobs.cells.data(),
                     job.count,
                     static_cast<std::uint32_t>(jobs.sub_poses.size()),
                     texels.tiles[job.slot].cluster.data(),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/simd.h"
 
@@ -151,8 +152,8 @@ struct Sheared {
     }
 
     /// Stores the picture over those positions as the jobs' one sub-pose.
-    void store(const Footprint& swept, StampJobs& jobs) const {
-        pack_picture(swept, jobs.pairs);
+    void store(Footprint& swept, StampJobs& jobs) const {
+        std::swap(swept.coverage, jobs.cells);
         jobs.width = swept.width - 1;
         jobs.height = swept.height - 1;
         const auto shear = static_cast<float>(-slope);

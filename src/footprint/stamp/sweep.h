@@ -8,7 +8,7 @@ namespace tuft::footprint {
 
 /// Computes the mean of the bilinear picture P over the motion, E(x) = ∫₀¹ P(x + ρ w) dρ with w = `shift` / cell.
 /// The picture is sheared so that the motion runs along one axis; the integral is the difference of two prefix
-/// sums. Fills pairs, width, height, gain and the one sub-pose from cells into the sheared picture, of `jobs`.
+/// sums. Fills cells, width, height, gain and the one sub-pose from cells into the sheared picture, of `jobs`.
 /// Exact along the motion; across it the shear interpolates between two cells. Cost: 0.3 ns per cell of the picture
 /// and per cell it passes over.
 void sweep(const Footprint& footprint, const Vec2& shift, StampJobs& jobs, SweepScratch& scratch);
