@@ -33,36 +33,43 @@ struct ColumnCoverage {
     return {some ? low : cells, some ? high : -1.0f, static_cast<float>(255 * (to - from))};
 }
 
-constexpr int kAtOnce = 16;  // columns; a picture has as many cells more beyond its last one
+constexpr int kFew = 8, kAtOnce = 16;  // columns; a picture has as many cells more beyond its last one
 
-/// Adds a band to columns `first` to `last` of a picture by rows, [rows columns]. Cells that it
-/// does not cover stay.
-TUFT_CLONES void draw_along(std::uint8_t* __restrict level, int rows, int columns, const Band& band, int first,
-                            int last) {
+/// Adds a band to `n` columns from i on.
+template <int n>
+[[gnu::always_inline]] inline void draw_columns(std::uint8_t* __restrict level, int rows, int columns, const Band& band,
+                                                int i) {
     const auto cells = static_cast<float>(rows);
-    for (int i = first; i <= last; i += kAtOnce) {
-        alignas(64) float lo[kAtOnce], hi[kAtOnce], whole[kAtOnce];
-        float lowest = cells, highest = -1;
+    alignas(64) float lo[n], hi[n], whole[n];
+    float lowest = cells, highest = -1;
 #pragma omp simd reduction(min : lowest) reduction(max : highest)
-        for (int t = 0; t < kAtOnce; ++t) {
-            const ColumnCoverage c = coverage_of_column(band, i + t, cells);
-            lo[t] = c.lo;
-            hi[t] = c.hi;
-            whole[t] = c.whole;
-            lowest = c.lo < lowest ? c.lo : lowest;
-            highest = c.hi > highest ? c.hi : highest;
-        }
-        for (int j = static_cast<int>(lowest); static_cast<float>(j) < highest; ++j) {
-            std::uint8_t* __restrict cell = level + std::size_t(j) * columns + i;
-            const auto low = static_cast<float>(j), high = low + 1;
+    for (int t = 0; t < n; ++t) {
+        const ColumnCoverage c = coverage_of_column(band, i + t, cells);
+        lo[t] = c.lo;
+        hi[t] = c.hi;
+        whole[t] = c.whole;
+        lowest = c.lo < lowest ? c.lo : lowest;
+        highest = c.hi > highest ? c.hi : highest;
+    }
+    for (int j = static_cast<int>(lowest); static_cast<float>(j) < highest; ++j) {
+        std::uint8_t* __restrict cell = level + std::size_t(j) * columns + i;
+        const auto low = static_cast<float>(j), high = low + 1;
 #pragma omp simd
-            for (int t = 0; t < kAtOnce; ++t) {
-                const float part = (hi[t] < high ? hi[t] : high) - (lo[t] > low ? lo[t] : low);
-                const float v = static_cast<float>(int{cell[t]}) + whole[t] * (part > 0 ? part : 0.0f) + 0.5f;
-                cell[t] = static_cast<std::uint8_t>(static_cast<int>(v < 255.0f ? v : 255.0f));
-            }
+        for (int t = 0; t < n; ++t) {
+            const float part = (hi[t] < high ? hi[t] : high) - (lo[t] > low ? lo[t] : low);
+            const float v = static_cast<float>(int{cell[t]}) + whole[t] * (part > 0 ? part : 0.0f) + 0.5f;
+            cell[t] = static_cast<std::uint8_t>(static_cast<int>(v < 255.0f ? v : 255.0f));
         }
     }
+}
+
+/// Adds a band to columns `first` to `last` of a picture by rows, [rows columns]. Cells that it
+/// does not cover stay. Most pieces of hair are a few columns long.
+TUFT_CLONES void draw_along(std::uint8_t* __restrict level, int rows, int columns, const Band& band, int first,
+                            int last) {
+    int i = first;
+    for (; i + kFew <= last; i += kAtOnce) draw_columns<kAtOnce>(level, rows, columns, band, i);
+    if (i <= last) draw_columns<kFew>(level, rows, columns, band, i);
 }
 
 /// The same in a picture by columns, [columns rows].

@@ -14,6 +14,16 @@ constexpr double kPi = std::numbers::pi;
 constexpr int kSearchSteps = 4;  // per segment, to find where the surface meets the surface
 constexpr int kSamples = 48;     // sections taken from a stretch that touches
 
+/// Places of the samples of a stretch, 0–1, close together at both ends.
+const std::array<double, kSamples>& sample_places() {
+    static const auto table = [] {
+        std::array<double, kSamples> t;
+        for (int i = 0; i < kSamples; ++i) t[i] = 0.5 - 0.5 * std::cos(kPi * i / (kSamples - 1));
+        return t;
+    }();
+    return table;
+}
+
 Cut cut_of(const brush::Section& s, const Frame& frame, const brush::ContactPlane* plane, double film) {
     const Vec3 normal = plane ? plane->normal : frame.n;
     const Vec3 origin = plane ? plane->origin : frame.origin;
@@ -317,8 +327,7 @@ Recycled<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, st
                 if (opening.first == trail.branch) trail.openings.push_back({opening.second, {}});
             trail.cuts.reserve(kSamples);
             trail.along.reserve(kSamples);
-            for (int i = 0; i < kSamples; ++i) {
-                const double f = 0.5 - 0.5 * std::cos(kPi * i / (kSamples - 1));
+            for (const double f : sample_places()) {
                 const double s = stretch.begin + f * (stretch.end - stretch.begin);
                 trail.cuts.push_back(surface.at(s));
                 trail.along.push_back(length > 0 ? whole - surface.from_tip(s) / length : 0);
@@ -398,6 +407,7 @@ void follow_track(Trail& trail, std::size_t begin, std::size_t end, HairTracks::
     }
     track.front = front;
     track.front_width = trail.cuts[widest].a;
+    if (options.amount == 0) return;
     for (std::size_t k = begin; k < end && position(k) < front; ++k) {
         Cut& cut = trail.cuts[k];
         const double width =

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/ease.h"
 #include "core/noise.h"
@@ -37,20 +38,28 @@ constexpr double kSameEnd = 0.01;      // of the length
 constexpr double kLeastLength = 1e-6;  // of the length, that hair touches with at least
 constexpr double kBeyond = 0.5;        // widest half width that the outermost hair's ink may reach further
 
-/// Returns true where a place is in the half of its section that faces the surface. That of a strip is one of its broad
-/// sides: hair at the higher edge of a leaning strip is also on the surface.
-bool is_lower(const Trail& trail, const Cut& cut, const Vec2& place) {
-    if (trail.strip) return place.y * cut.thick().z <= 0;
-    return cut.a * place.x * cut.e.z + cut.b * place.y * cut.m.z <= 0;
-}
+/// What of a section says which of its hair is on the surface.
+struct Underside {
+    double z = 0, a = 0, b = 0, e_z = 0, m_z = 0;  ///< of a disc, see Cut
+    double thick_z = 0;                            ///< of a strip
+    bool strip = false, touches = false;
 
-/// Returns true where the section's underside at the place is at or below the surface. All of a strip that touches
-/// gives its ink: a leaning one comes down bundle by bundle, and would be of one bundle's ink for a stamp.
-bool is_touching(const Trail& trail, const Cut& cut, const Vec2& place) {
-    if (trail.strip) return cut.overlap() >= 0;
-    const double chord = trail.chord(place.x);
-    return cut.z + cut.a * place.x * cut.e.z - chord * cut.b * std::abs(cut.m.z) <= 0;
-}
+    Underside(const Trail& trail, const Cut& cut)
+        : z(cut.z), a(cut.a), b(cut.b), e_z(cut.e.z), m_z(cut.m.z), strip(trail.strip) {
+        if (!strip) return;
+        thick_z = cut.thick().z;
+        touches = cut.overlap() >= 0;
+    }
+    /// Returns true where a place is in the half of its section that faces the surface, and the underside there is at
+    /// or below the surface. The half of a strip is one of its broad sides: hair at the higher edge of a leaning strip
+    /// is also on the surface. All of a strip that touches gives its ink: a leaning one comes down bundle by bundle,
+    /// and would be of one bundle's ink for a stamp. `chord`: of the place, see Trail.
+    bool is_on_surface(const Vec2& place, double chord) const {
+        if (strip) return touches && place.y * thick_z <= 0;
+        const double along_e = a * place.x * e_z;
+        return along_e + b * place.y * m_z <= 0 && z + along_e - chord * b * std::abs(m_z) <= 0;
+    }
+};
 
 /// Position of a bristle in the sections of a trail: in the whole tuft, and in the branch that it belongs to.
 struct BristlePlace {
@@ -195,10 +204,10 @@ Recycled<Strand> strands_of(Recycled<LowerBristle>& lower, const brush::Bundles&
 }
 
 /// Returns the point where the section at lateral position x meets the surface, or its middle where all of it is below.
-Vec2 point_on_surface(const Trail& trail, const Cut& cut, double x) {
+/// `chord`: of the trail at x.
+Vec2 point_on_surface(const Trail& trail, const Cut& cut, double x, double chord) {
     const double height = trail.strip ? cut.thick().z : cut.b * cut.m.z;
     const double need = cut.z + (trail.strip ? x * cut.broad().z : cut.a * x * cut.e.z);
-    const double chord = trail.chord(x);
     const double meets = std::abs(height) > 1e-9 ? std::clamp(-need / height, -chord, chord) : 0;
     const double y = need < -chord * std::abs(height) ? 0 : meets;
     return trail.strip ? cut.centre + x * Vec2(cut.broad()) + y * Vec2(cut.thick()) : cut.at(x, y);
@@ -239,9 +248,11 @@ class StrandPen {
         double half_before = 0;
         const bool whole_tip = along(0) <= strand.end, whole_root = along(last) >= strand.begin;
         bool first = true;
+        Vec2 q = centre(line, k);
+        double s = half_width(line, k);
         for (; k < last && along(k) > strand.begin && along(k + 1) < strand.end; ++k) {
-            const Vec2 p = centre(line, k), q = centre(line, k + 1);
-            const double r = half_width(line, k), s = half_width(line, k + 1);
+            const Vec2 p = std::exchange(q, centre(line, k + 1));
+            const double r = std::exchange(s, half_width(line, k + 1));
             const double from = along(k) > strand.end ? fraction(k, strand.end) : 0,
                          to = along(k + 1) < strand.begin ? fraction(k, strand.begin) : 1;
             const Vec2 start = glm::mix(p, q, from);
@@ -263,18 +274,19 @@ class StrandPen {
   private:
     /// A strand's middle and half width, as positions in the sections, and the ink beyond them, cells.
     struct Line {
-        double x, half, past_lo, past_hi;
+        double x, chord, half, past_lo, past_hi;
     };
     Line line_of(const Strand& strand) const {
         // Ink reaches beyond the hair by a length of its own, so that the sides close where sections end in a point.
         const double most = kBeyond * widest_;
-        return {0.5 * (strand.lo + strand.hi), 0.5 * (strand.hi - strand.lo),
-                std::min(strand.past_lo, most) / picture_.cell, std::min(strand.past_hi, most) / picture_.cell};
+        const double x = 0.5 * (strand.lo + strand.hi);
+        return {x, trail_.chord(x), 0.5 * (strand.hi - strand.lo), std::min(strand.past_lo, most) / picture_.cell,
+                std::min(strand.past_hi, most) / picture_.cell};
     }
     double along(std::size_t k) const { return trail_.along[at_[k]]; }
     /// Centre and half width of a strand at cut k of the pen, cells.
     Vec2 centre(const Line& line, std::size_t k) const {
-        return (point_on_surface(trail_, trail_.cuts[at_[k]], line.x) - picture_.lo) / picture_.cell +
+        return (point_on_surface(trail_, trail_.cuts[at_[k]], line.x, line.chord) - picture_.lo) / picture_.cell +
                0.5 * (line.past_hi - line.past_lo) * across_[k];
     }
     double half_width(const Line& line, std::size_t k) const {
@@ -314,17 +326,26 @@ template <class F>
 bool for_each_contact(const Trail& trail, const brush::Bundles& bundles, int branches, F f) {
     constexpr std::size_t kStride = 3;  // sections looked at
     const std::size_t count = trail.cuts.size();
+    Recycled<Underside> undersides;
+    undersides.reserve(count / kStride + 1);
+    for (std::size_t i = 0; i < count; i += kStride) undersides.emplace_back(trail, trail.cuts[i]);
+    // Of them those of the sub-spine; the others are the trunk's.
+    const std::size_t outer = std::min((trail.trunk + kStride - 1) / kStride, undersides.size());
     bool any = false;
     for (std::size_t k = 0; k < bundles.place.size(); ++k) {
         const BristlePlace placed(bundles, bundles.place[k], branches);
-        for (std::size_t i = 0; i < count; i += kStride) {
-            const Vec2* at = placed.at(trail, i);
-            if (!at || !is_lower(trail, trail.cuts[i], *at) || !is_touching(trail, trail.cuts[i], *at)) continue;
-            const std::size_t a = i > 0 ? i - 1 : i, b = std::min(i + 1, count - 1);
-            // The cap of an edge that just touches has no length of hair.
-            f(k, i, *at, std::max(std::abs(trail.along[a] - trail.along[b]), kLeastLength));
-            any = true;
-        }
+        const auto look = [&](std::size_t begin, std::size_t end, const Vec2& at) {
+            const double chord = trail.chord(at.x);
+            for (std::size_t s = begin; s < end; ++s) {
+                if (!undersides[s].is_on_surface(at, chord)) continue;
+                const std::size_t i = s * kStride, a = i > 0 ? i - 1 : i, b = std::min(i + 1, count - 1);
+                // The cap of an edge that just touches has no length of hair.
+                f(k, i, at, std::max(std::abs(trail.along[a] - trail.along[b]), kLeastLength));
+                any = true;
+            }
+        };
+        if (placed.part.branch == trail.branch) look(0, outer, placed.part.place);
+        look(outer, undersides.size(), placed.whole);
     }
     return any;
 }
@@ -379,8 +400,8 @@ Recycled<HairContactPoint> hair_contact_points(std::span<const Trail> trails, co
     Recycled<HairContactPoint> found;
     for (const Trail& trail : trails) {
         const auto add = [&](std::size_t k, std::size_t i, const Vec2& place, double length) {
-            found.push_back({static_cast<std::uint32_t>(k), point_on_surface(trail, trail.cuts[i], place.x),
-                             trail.along[i], length});
+            const Vec2 at = point_on_surface(trail, trail.cuts[i], place.x, trail.chord(place.x));
+            found.push_back({static_cast<std::uint32_t>(k), at, trail.along[i], length});
         };
         if (!for_each_contact(trail, bundles, branches, add)) for_each_bundle(trail, bundles, branches, add);
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -14,19 +15,41 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr int kDirections = 24;  // points of a whole section's shadow
 
-const std::array<Vec2, kDirections>& directions() {
+/// Cosines and sines of evenly spaced directions.
+struct Directions {
+    std::array<double, kDirections> cos, sin;
+};
+
+const Directions& directions() {
     static const auto table = [] {
-        std::array<Vec2, kDirections> t;
-        for (int k = 0; k < kDirections; ++k)
-            t[k] = {std::cos(2 * kPi * k / kDirections), std::sin(2 * kPi * k / kDirections)};
+        Directions t;
+        for (int k = 0; k < kDirections; ++k) {
+            t.cos[k] = std::cos(2 * kPi * k / kDirections);
+            t.sin[k] = std::sin(2 * kPi * k / kDirections);
+        }
         return t;
     }();
     return table;
 }
 
+/// A bit for each direction.
+using DirectionSet = std::uint32_t;
+constexpr DirectionSet kAllDirections = (DirectionSet{1} << kDirections) - 1;
+
+/// The directions whose component along (cos, sin) is below `level`.
+DirectionSet directions_below(const Directions& of, double cos, double sin, double level) {
+    std::array<double, kDirections> along;
+    for (int k = 0; k < kDirections; ++k) along[k] = of.cos[k] * cos + of.sin[k] * sin;
+    DirectionSet set = 0;
+    for (int k = 0; k < kDirections; ++k) set |= static_cast<DirectionSet>(along[k] < level) << k;
+    return set;
+}
+
 /// Adds the corners of the shadow of the part of a section that lies below the surface, in order:
 /// first and last are its cut points Q±, unless all of it lies below.
-void add_shadow(const Cut& cut, Recycled<Vec2>& corners) {
+void add_shadow(const Cut& of, Recycled<Vec2>& corners) {
+    const Cut cut = of;  // which no corner overwrites
+    const Directions& table = directions();
     const double p = cut.a * cut.e.z, q = cut.b * cut.m.z, height = std::sqrt(p * p + q * q);
     const double level = height > 0 ? std::clamp(-cut.z / height, -1.0, 1.0) : (cut.z <= 0 ? 1 : -1);
     const double cos_f = height > 0 ? p / height : 1, sin_f = height > 0 ? q / height : 0;
@@ -35,18 +58,18 @@ void add_shadow(const Cut& cut, Recycled<Vec2>& corners) {
     const Vec2 from{cos_f * level - sin_f * sin_l, sin_f * level + cos_f * sin_l};
     const Vec2 to{cos_f * level + sin_f * sin_l, sin_f * level - cos_f * sin_l};
     if (level < 1) corners.push_back(cut.at(from.x, from.y));
-    const auto below = [&](int k) {
-        const Vec2& w = directions()[k];
-        return level >= 1 || w.x * cos_f + w.y * sin_f < level;
-    };
+    const DirectionSet below = level >= 1 ? kAllDirections : directions_below(table, cos_f, sin_f, level);
     // They are taken in order from Q+ on: from where those below the surface begin.
-    int first = 0;
-    while (first < kDirections && !(below(first) && !below((first + kDirections - 1) % kDirections))) ++first;
-    if (first == kDirections)
-        first = static_cast<int>(std::ceil(std::atan2(from.y, from.x) * kDirections / (2 * kPi))) + kDirections;
-    for (int k = 0; k < kDirections; ++k) {
-        const int at = (first + k) % kDirections;
-        if (below(at)) corners.push_back(cut.at(directions()[at].x, directions()[at].y));
+    const DirectionSet begins = below & ~(below << 1 | below >> (kDirections - 1));
+    int at = 0;
+    if (begins != 0)
+        at = std::countr_zero(begins);
+    else if (below != 0)
+        at = (static_cast<int>(std::ceil(std::atan2(from.y, from.x) * kDirections / (2 * kPi))) + kDirections) %
+             kDirections;
+    for (int k = 0; k < kDirections && below != 0; ++k) {
+        if (below >> at & 1) corners.push_back(cut.at(table.cos[at], table.sin[at]));
+        at = at + 1 < kDirections ? at + 1 : 0;
     }
     if (level < 1) corners.push_back(cut.at(to.x, to.y));
 }

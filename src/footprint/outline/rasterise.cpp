@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <string>
 
 #include "core/error.h"
@@ -69,43 +70,48 @@ struct Border {
         }
     }
 
-    /// Coverage of all cells; outlines of one sense cover positively, all together at most once.
+    /// Coverage of all cells; outlines of one sense cover positively, all together at most once. `out`: zeros.
     void resolve(int width, std::uint8_t* out) const {
-        Recycled<std::uint32_t> start(static_cast<std::size_t>(height) + 1, 0);
-        for (const BorderCell& c : cells) ++start[c.row + 1];
-        for (int j = 0; j < height; ++j) start[j + 1] += start[j];
-        Recycled<BorderCell> sorted(cells.size());
-        Recycled<std::uint32_t> next(start.begin(), start.end() - 1);
-        for (const BorderCell& c : cells) sorted[next[c.row]++] = c;
+        // Row j holds the names from start[j] to start[j + 1], once they are put there.
+        Recycled<std::uint32_t> start(static_cast<std::size_t>(height) + 2, 0);
+        for (const BorderCell& c : cells) ++start[c.row + 2];
+        for (int j = 0; j < height; ++j) start[j + 2] += start[j + 1];
+        Recycled<Name> names(cells.size());
+        for (std::size_t k = 0; k < cells.size(); ++k)
+            names[start[cells[k].row + 1]++] = static_cast<Name>(cells[k].column) << 32 | k;
         for (int j = 0; j < height; ++j) {
-            BorderCell *first = sorted.data() + start[j], *last = sorted.data() + start[j + 1];
-            sort_by_column(first, last);
+            Name *first = names.data() + start[j], *last = names.data() + start[j + 1];
+            sort(first, last);
             std::uint8_t* line = out + static_cast<std::size_t>(j) * width;
             float height_before = 0;
             int column = 0;
             while (first < last) {
-                const int at = first->column;
-                std::fill(line + column, line + at, level(height_before));
+                const int at = static_cast<int>(*first >> 32);
+                if (const std::uint8_t inside = level(height_before); inside != 0 && column < at)
+                    std::memset(line + column, inside, static_cast<std::size_t>(at - column));
                 float area = height_before;
-                for (; first < last && first->column == at; ++first) {
-                    area += first->area;
-                    height_before += first->height;
+                for (; first < last && static_cast<int>(*first >> 32) == at; ++first) {
+                    const BorderCell& cell = cells[*first & 0xffffffffu];
+                    area += cell.area;
+                    height_before += cell.height;
                 }
                 line[at] = level(area);
                 column = at + 1;
             }
             // What is left of the sum beyond the last border is rounding.
-            std::fill(line + column, line + width, std::uint8_t{0});
         }
     }
 
+    /// Column of a cell, and its number below it: in this order the cells of a column are as they were drawn.
+    using Name = std::uint64_t;
+
     /// By insertion: a row has few, and most lie in order.
-    static void sort_by_column(BorderCell* first, BorderCell* last) {
-        for (BorderCell* k = first; k < last; ++k) {
-            const BorderCell cell = *k;
-            BorderCell* to = k;
-            for (; to > first && to[-1].column > cell.column; --to) *to = to[-1];
-            *to = cell;
+    static void sort(Name* first, Name* last) {
+        for (Name* k = first; k < last; ++k) {
+            const Name name = *k;
+            Name* to = k;
+            for (; to > first && to[-1] > name; --to) *to = to[-1];
+            *to = name;
         }
     }
 
@@ -145,13 +151,15 @@ Footprint rasterise_polygons(std::span<const Polygon> polygons, const Frame& fra
     result.triangle = triangle;
     result.cell = cell;
     Vec2 lo{1e9}, hi{-1e9};
+    double radius2 = 0;
     for (const Polygon& polygon : polygons) {
         for (const Vec2& p : polygon) {
             lo = glm::min(lo, p);
             hi = glm::max(hi, p);
-            result.radius = std::max(result.radius, glm::length(p));
+            radius2 = std::max(radius2, glm::dot(p, p));
         }
     }
+    result.radius = std::sqrt(radius2);
     if (!(lo.x <= hi.x && lo.y <= hi.y)) return result;
     const double side = std::max(hi.x - lo.x, hi.y - lo.y);
     if (!std::isfinite(side / cell))
@@ -170,7 +178,8 @@ Footprint rasterise_polygons(std::span<const Polygon> polygons, const Frame& fra
     for (const Polygon& polygon : polygons) {
         curve.clear();
         for (const Vec2& p : polygon) curve.push_back(p / cell - first);
-        for (std::size_t k = 0; k < curve.size(); ++k) border.add(curve[k], curve[(k + 1) % curve.size()]);
+        for (std::size_t k = 0; k + 1 < curve.size(); ++k) border.add(curve[k], curve[k + 1]);
+        if (!curve.empty()) border.add(curve.back(), curve.front());
     }
     result.coverage.resize(static_cast<std::size_t>(result.width) * result.height);
     border.resolve(result.width, result.coverage.data());
