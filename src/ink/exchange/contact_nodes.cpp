@@ -81,12 +81,15 @@ NodeContact node_contact(const Reservoir& tuft, const ContactGrid& grid, std::sp
 bool is_mixed(const Reservoir& tuft) {
     const double all = tuft.remaining();
     if (!(all > 0)) return false;
-    Content part;
-    for (int p = 0; p < kPlanes; ++p) part[p] = tuft.pigment(p) / all;
+    Content part{};
+    for (const Content& c : tuft.content)
+        for (int p = 0; p < kPlanes; ++p) part[p] += c[p];
+    for (double& p : part) p /= all;
     for (const Content& c : tuft.content) {
         const double content = sum_of(c);
-        for (int p = 0; p < kPlanes; ++p)
-            if (std::abs(c[p] - part[p] * content) > kAlike * content) return true;
+        double most = 0;
+        for (int p = 0; p < kPlanes; ++p) most = std::max(most, std::abs(c[p] - part[p] * content));
+        if (most > kAlike * content) return true;
     }
     return false;
 }

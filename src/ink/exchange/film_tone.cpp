@@ -1,6 +1,7 @@
 #include "ink/exchange/film_tone.h"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "core/simd.h"
 
@@ -14,13 +15,23 @@ TUFT_CLONES void multiply_profile(float* __restrict tone, const float* __restric
                                   const Vec3f& origin, const Vec3f& across) {
     const float* __restrict x = shape.px.data(), * __restrict y = shape.py.data(), * __restrict z = shape.pz.data();
     constexpr auto last = static_cast<float>(kToneSamples - 1);
+    // In three loops, so that what is computed goes in vectors though the samples are read one by one.
+    alignas(64) std::int32_t sample[atlas::kTileTexels];
+    alignas(64) float part[atlas::kTileTexels], before[atlas::kTileTexels], after[atlas::kTileTexels];
+    const float ox = origin.x, oy = origin.y, oz = origin.z, ax = across.x, ay = across.y, az = across.z;
     for (int t = 0; t < atlas::kTileTexels; ++t) {
-        const float at = (x[t] - origin.x) * across.x + (y[t] - origin.y) * across.y + (z[t] - origin.z) * across.z;
+        const float at = (x[t] - ox) * ax + (y[t] - oy) * ay + (z[t] - oz) * az;
         const float low = at > 0 ? at : 0, limited = low < last ? low : last;
         int i = static_cast<int>(limited);
         i = i < kToneSamples - 2 ? i : kToneSamples - 2;
-        tone[t] *= film[i] + (limited - static_cast<float>(i)) * (film[i + 1] - film[i]);
+        sample[t] = i;
+        part[t] = limited - static_cast<float>(i);
     }
+    for (int t = 0; t < atlas::kTileTexels; ++t) {
+        before[t] = film[sample[t]];
+        after[t] = film[sample[t] + 1];
+    }
+    for (int t = 0; t < atlas::kTileTexels; ++t) tone[t] *= before[t] + part[t] * (after[t] - before[t]);
 }
 
 TUFT_CLONES void multiply_grain(float* __restrict tone, const float* __restrict relief, float share) {

@@ -133,12 +133,6 @@ double saturation_over(const Reservoir& tuft, std::span<const float> contact) {
 
 }  // namespace
 
-double sum_of(const Reservoir::Content& content) {
-    double sum = 0;
-    for (const double v : content) sum += v;
-    return sum;
-}
-
 double Reservoir::remaining() const {
     double sum = 0;
     for (const Content& c : content) sum += sum_of(c);

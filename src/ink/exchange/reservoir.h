@@ -63,7 +63,11 @@ struct Reservoir {
 };
 
 /// Returns the wet ink of a content, film·m²: all planes together.
-double sum_of(const Reservoir::Content& content);
+inline double sum_of(const Reservoir::Content& content) {
+    double sum = 0;
+    for (const double v : content) sum += v;
+    return sum;
+}
 
 /// Sets the capacity of the tuft and of all its cells to `part` (0–1) of that at rest: foam that is pressed. Contents
 /// do not change; cells may then hold more than their capacity.

@@ -67,7 +67,8 @@ HairContact::Wetness HairContact::bundle_wetness(TuftInHand& tuft, const MotionT
     // Which hair touches with which part of it flickers from stamp to stamp: threads of ink would break in dashes.
     const double soaks = -std::expm1(-(motion.travel - updated_at_) / kSoakLength);
     for (std::size_t k = 0; k < n; ++k) {
-        for (std::size_t c = 0; c < n_cells; ++c) saturation[k] += depth[c] * reservoir.saturation(k * n_cells + c);
+        for (std::size_t c = 0; c < n_cells; ++c)
+            if (depth[c] > 0) saturation[k] += depth[c] * reservoir.saturation(k * n_cells + c);
         double& wet = wetness.of_bundle[k];
         wet = footprint::wetness_of_bundle(saturation[k], bundles.holds[k], motion.speed);
         if (soaked_.size() == n) wet = std::lerp(soaked_[k], wet, soaks);

@@ -6,6 +6,7 @@
 
 #include "core/ease.h"
 #include "core/geometry/solid_noise.h"
+#include "core/simd.h"
 
 namespace tuft::stroke {
 namespace {
@@ -34,6 +35,17 @@ Recycled<double> loads_of(const ink::Reservoir& reservoir, const brush::Bundles&
     return loads;
 }
 
+/// Adds the hat of height w and half width `reach` about `centre`, and it times `value`, to the samples from `first` to
+/// `last`.
+TUFT_CLONES void add_hat(double* __restrict weight, double* __restrict load, int first, int last, double centre,
+                         double reach, double w, double value) {
+    for (int i = first; i <= last; ++i) {
+        const double hat = w * (1 - std::abs(i - centre) / reach);
+        weight[i] += hat;
+        load[i] += hat * value;
+    }
+}
+
 /// Sums of hats about the points, by sample.
 struct Sums {
     std::array<double, ink::kToneSamples> weight{}, load{};
@@ -41,11 +53,7 @@ struct Sums {
     void add(double centre, double reach, double w, double value) {
         const int first = std::max(0, static_cast<int>(std::ceil(centre - reach))),
                   last = std::min(ink::kToneSamples - 1, static_cast<int>(std::floor(centre + reach)));
-        for (int i = first; i <= last; ++i) {
-            const double hat = w * (1 - std::abs(i - centre) / reach);
-            weight[i] += hat;
-            load[i] += hat * value;
-        }
+        add_hat(weight.data(), load.data(), first, last, centre, reach, w, value);
     }
 };
 

@@ -17,9 +17,17 @@ constexpr double kFirmStrain = 0.25;
 
 }  // namespace
 
-double wetness_of(const ink::Reservoir& reservoir) {
-    const double x = std::clamp(reservoir.fullness() / kWetFullness, 0.0, 1.0);
+namespace {
+
+double wetness_at(double fullness) {
+    const double x = std::clamp(fullness / kWetFullness, 0.0, 1.0);
     return x * (2 - x);
+}
+
+}  // namespace
+
+double wetness_of(const ink::Reservoir& reservoir) {
+    return wetness_at(reservoir.fullness());
 }
 
 ink::Reservoir empty_reservoir(const brush::Tuft& tuft) {
@@ -31,7 +39,7 @@ ink::Reservoir empty_reservoir(const brush::Tuft& tuft) {
 
 void TuftInHand::update_wetness() {
     brush.tuft.ink_left = brush.reservoir.fullness();
-    brush.tuft.wetness = wetness_of(brush.reservoir);
+    brush.tuft.wetness = wetness_at(brush.tuft.ink_left);
 }
 
 void TuftInHand::bend(brush::TuftState next, const brush::Pose& pose) {
