@@ -43,10 +43,14 @@ struct Underside {
     double z = 0, a = 0, b = 0, e_z = 0, m_z = 0;  ///< of a disc, see Cut
     double thick_z = 0;                            ///< of a strip
     bool strip = false, touches = false;
+    double length = 0;  ///< of hair that it stands for. The cap of an edge that just touches has none.
 
-    Underside(const Trail& trail, const Cut& cut)
-        : z(cut.z), a(cut.a), b(cut.b), e_z(cut.e.z), m_z(cut.m.z), strip(trail.strip) {
+    Underside(const Trail& trail, std::size_t i) : Underside(trail.cuts[i]) {
+        const std::size_t before = i > 0 ? i - 1 : i, after = std::min(i + 1, trail.cuts.size() - 1);
+        length = std::max(std::abs(trail.along[before] - trail.along[after]), kLeastLength);
+        strip = trail.strip;
         if (!strip) return;
+        const Cut& cut = trail.cuts[i];
         thick_z = cut.thick().z;
         touches = cut.overlap() >= 0;
     }
@@ -59,6 +63,9 @@ struct Underside {
         const double along_e = a * place.x * e_z;
         return along_e + b * place.y * m_z <= 0 && z + along_e - chord * b * std::abs(m_z) <= 0;
     }
+
+  private:
+    explicit Underside(const Cut& cut) : z(cut.z), a(cut.a), b(cut.b), e_z(cut.e.z), m_z(cut.m.z) {}
 };
 
 /// Position of a bristle in the sections of a trail: in the whole tuft, and in the branch that it belongs to.
@@ -328,7 +335,7 @@ bool for_each_contact(const Trail& trail, const brush::Bundles& bundles, int bra
     const std::size_t count = trail.cuts.size();
     Recycled<Underside> undersides;
     undersides.reserve(count / kStride + 1);
-    for (std::size_t i = 0; i < count; i += kStride) undersides.emplace_back(trail, trail.cuts[i]);
+    for (std::size_t i = 0; i < count; i += kStride) undersides.emplace_back(trail, i);
     // Of them those of the sub-spine; the others are the trunk's.
     const std::size_t outer = std::min((trail.trunk + kStride - 1) / kStride, undersides.size());
     bool any = false;
@@ -338,9 +345,7 @@ bool for_each_contact(const Trail& trail, const brush::Bundles& bundles, int bra
             const double chord = trail.chord(at.x);
             for (std::size_t s = begin; s < end; ++s) {
                 if (!undersides[s].is_on_surface(at, chord)) continue;
-                const std::size_t i = s * kStride, a = i > 0 ? i - 1 : i, b = std::min(i + 1, count - 1);
-                // The cap of an edge that just touches has no length of hair.
-                f(k, i, at, std::max(std::abs(trail.along[a] - trail.along[b]), kLeastLength));
+                f(k, s * kStride, at, undersides[s].length);
                 any = true;
             }
         };
@@ -377,11 +382,14 @@ Recycled<float> contact_cells(std::span<const Trail> trails, const brush::Bundle
     const auto cell_at = [&](double along) {
         return std::min<std::size_t>(std::upper_bound(ends.begin(), ends.end(), along) - ends.begin(), cells - 1);
     };
+    Recycled<std::size_t> cell_of_cut;
     double front = 0;
     for (const Trail& trail : trails) {
         front = std::max(front, trail.along.front());
+        cell_of_cut.clear();
+        for (const double along : trail.along) cell_of_cut.push_back(cell_at(along));
         for_each_contact(trail, bundles, branches, [&](std::size_t k, std::size_t i, const Vec2&, double length) {
-            sum[k * cells + cell_at(trail.along[i])] += length;
+            sum[k * cells + cell_of_cut[i]] += length;
         });
     }
     double all = 0;
