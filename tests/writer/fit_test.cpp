@@ -149,7 +149,7 @@ TEST(Fit, AStraightBarIsCoveredFromAWrongStart) {
     fill(target.wanted, std::span(&bar, 1));
     std::vector<Station> start;
     for (double x = 100; x <= 500; x += 8) start.push_back({{x, 112}, 14});  // 12 units beside it, too thin
-    const FitResult once = fit_stations(start, target, hand, {}, {.tries = 1, .fine_tries = 0, .knuckle_tries = 0});
+    const FitResult once = fit_stations(start, target, hand, {}, {.tries = 1, .knuckle_tries = 0});
     const FitResult fitted = fit_stations(start, target, hand, {}, {.tries = 12});
     EXPECT_LT(once.iou, 0.6);
     // A cell along both edges, 2 of 44 units, and 6 units at either end, 12 of 444: where a tuft lands and lifts.
@@ -171,9 +171,9 @@ TEST(Fit, OtherBeginsAndMannersNeverLose) {
         other.push_back({{std::lerp(395, 328, t), std::lerp(95, 220, t)}, std::lerp(20, 5, t)});
     }
     const FitResult first = fit_stations(start, target, hand, {},
-                                         {.tries = 4, .fine_tries = 0, .weak = 0, .knuckle_tries = 0}, other),
+                                         {.tries = 4, .weak = 0, .knuckle_tries = 0}, other),
                     best = fit_stations(start, target, hand, {},
-                                        {.tries = 4, .fine_tries = 0, .weak = 1, .knuckle_tries = 0}, other);
+                                        {.tries = 4, .weak = 1, .knuckle_tries = 0}, other);
     EXPECT_LE(first.tries, 4);
     EXPECT_GT(best.tries, first.tries);
     EXPECT_GE(best.score, first.score);
@@ -190,7 +190,7 @@ TEST(Fit, APathFarFromItsTargetIsReturned) {
     fill(target.wanted, std::span(&bar, 1));
     std::vector<Station> start;
     for (double x = 2000; x <= 2100; x += 8) start.push_back({{x, 2000}, 16});
-    EXPECT_EQ(fit_stations(start, target, hand, {}, {.tries = 2, .fine_tries = 0}).stations, start);
+    EXPECT_EQ(fit_stations(start, target, hand, {}, {.tries = 2}).stations, start);
 }
 
 TEST(Style, ShippedOnesLoadAndUnknownKeysAreNamed) {

@@ -219,16 +219,15 @@ stroke::PlaneInk draw_on_plane(std::span<const Station> stations, const BrushHan
 FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& target, const BrushHand& hand,
                        const Pace& pace, const FitOptions& options, const std::vector<Station>& other) {
     const std::vector<float> depths = depths_of(target.wanted);
-    const auto fit_from = [&](const std::vector<Station>& first, const std::vector<Station>& begin, int tries,
-                              double step, const Manner& manner) {
+    const auto fit_from = [&](const std::vector<Station>& first, const Manner& manner) {
         const std::vector<double> soft = softness_of(first);
-        FitResult best{.stations = begin};
-        std::vector<Station> next = begin;
-        for (int t = 0, idle = 0; t < tries && idle < options.idle; ++t) {
+        FitResult best{.stations = first};
+        std::vector<Station> next = first;
+        for (int t = 0, idle = 0; t < options.tries && idle < options.idle; ++t) {
             check_interrupt();
             const stroke::StrokeSamples trace = samples_of(next, hand, pace);
-            const stroke::PlaneInk ink =
-                stroke::plane_ink(trace, hand.preset, hand.hold, step * hand.unit, target.wanted.cell * hand.unit);
+            const stroke::PlaneInk ink = stroke::plane_ink(trace, hand.preset, hand.hold, options.step * hand.unit,
+                                                           target.wanted.cell * hand.unit);
             const std::vector<float> coverage = coverage_by(ink, target.wanted, hand.unit);
             const InkScore reached = score_of(target, depths, coverage);
             const Errors errors =
@@ -240,24 +239,17 @@ FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& ta
         }
         return best;
     };
-    const std::vector<Station>* first = &stations;
-    Manner manner;
     FitResult best{.stations = stations};
     for (const std::vector<Station>* begin : {&stations, &other})
         for (const Manner& next : kManners) {
             if (begin->empty() || (best.tries > 0 && best.iou >= options.weak)) continue;
-            FitResult again = fit_from(*begin, *begin, options.tries, options.step, next);
+            FitResult again = fit_from(*begin, next);
             again.tries += best.tries;
             if (again.score > best.score)
-                best = std::move(again), first = begin, manner = next;
+                best = std::move(again);
             else
                 best.tries = again.tries;
         }
-    if (options.fine_tries > 0) {
-        const int before = best.tries;
-        best = fit_from(*first, best.stations, options.fine_tries, options.fine_step, manner);
-        best.tries += before;
-    }
     return take_off_knuckles(std::move(best), target, depths, hand, pace, options);
 }
 
