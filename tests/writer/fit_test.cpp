@@ -5,6 +5,7 @@
 
 #include "core/files/files.h"
 #include "core/system/parallel.h"
+#include "stroke/drawing/plane_ink.h"
 #include "writer/fit/writer.h"
 #include "writer/glyphs/glyph_source.h"
 
@@ -132,6 +133,33 @@ TEST(Writer, NamesTheSizeOfABrushThatFits) {
     }
 }
 
+// Paths that are alike up to their head, middle, or end, and one that is another. What was drawn before must not be
+// seen.
+TEST(Fit, ADrawingThatBeginsLikeTheOneBeforeIsTheSameToTheBit) {
+    stroke::WidthTables tables;
+    const std::string brush = "goat-medium";
+    const BrushHand hand{tables.preset(brush), tables.of(brush), tables.holder(brush), 1.3e-4};
+    std::vector<Station> line;
+    for (int i = 0; i < 30; ++i) line.push_back({{100 + 8.0 * i, 100}, 18});
+    stroke::PlaneDrawing drawing(hand.preset, hand.hold, 4 * hand.unit, 2 * hand.unit);
+    for (const int changed : {-1, 25, 12, 0, 12, 28}) {
+        std::vector<Station> own = line;
+        if (changed >= 0) own[static_cast<std::size_t>(changed)].centre.y += 5;
+        const stroke::StrokeSamples trace = samples_of(own, hand);
+        const stroke::PlaneInk &ink = drawing.draw(trace),
+                               alone = stroke::plane_ink(trace, hand.preset, hand.hold, 4 * hand.unit, 2 * hand.unit);
+        int there = 0, wrong = 0;
+        for (double y = 50; y < 150; y += 2)
+            for (double x = 50; x < 400; x += 2) {
+                const Vec2 p = hand.unit * Vec2(x, y);
+                there += alone.at(p) > 0.5;
+                wrong += ink.at(p) != alone.at(p) || ink.when(p) != alone.when(p);
+            }
+        EXPECT_EQ(wrong, 0) << changed;
+        EXPECT_GT(there, 29 * 36) << changed;  // cells of 29 · 8 units by two half widths: 2088, and half of them
+    }
+}
+
 TEST(Fit, AStraightBarIsCoveredFromAWrongStart) {
     stroke::WidthTables tables;
     const std::string brush = "goat-medium";
@@ -170,10 +198,8 @@ TEST(Fit, OtherBeginsAndMannersNeverLose) {
         start.push_back({{std::lerp(380, 328, t), std::lerp(102, 220, t)}, std::lerp(20, 5, t)});
         other.push_back({{std::lerp(395, 328, t), std::lerp(95, 220, t)}, std::lerp(20, 5, t)});
     }
-    const FitResult first = fit_stations(start, target, hand, {},
-                                         {.tries = 4, .weak = 0, .knuckle_tries = 0}, other),
-                    best = fit_stations(start, target, hand, {},
-                                        {.tries = 4, .weak = 1, .knuckle_tries = 0}, other);
+    const FitResult first = fit_stations(start, target, hand, {}, {.tries = 4, .weak = 0, .knuckle_tries = 0}, other),
+                    best = fit_stations(start, target, hand, {}, {.tries = 4, .weak = 1, .knuckle_tries = 0}, other);
     EXPECT_LE(first.tries, 4);
     EXPECT_GT(best.tries, first.tries);
     EXPECT_GE(best.score, first.score);

@@ -19,6 +19,10 @@ std::uint64_t key_of(std::int64_t i, std::int64_t j) {
     return (static_cast<std::uint64_t>(i) << 32) ^ (static_cast<std::uint64_t>(j) & 0xFFFFFFFFu);
 }
 
+bool is_same(const brush::Pose& a, const brush::Pose& b) {
+    return a.position == b.position && a.rotation == b.rotation && a.time == b.time;
+}
+
 std::int64_t tile_of(std::int64_t cell, int tile) {
     return cell >= 0 ? cell / tile : -((tile - 1 - cell) / tile);
 }
@@ -83,45 +87,75 @@ double PlaneInk::at(const Vec2& p) const {
                      f.y);
 }
 
-PlaneInk plane_ink(const StrokeSamples& trace, const brush::Preset& preset, const HolderOptions& options, double step,
-                   double cell) {
-    const Frame plane_frame;
-    std::vector<brush::Pose> poses;
-    const StrokeSamples led = lift_off(compensate_tip_lag(trace, options), options);
-    const std::vector<double> depths = tip_depths<StrokeSample>(led.samples, options);
+void PlaneInk::copy_row(std::int64_t i, std::int64_t j, std::span<float> to) const {
+    for (std::size_t x = 0; x < to.size();) {
+        std::size_t cell = 0;
+        const Tile* t = tile(i + static_cast<std::int64_t>(x), j, cell);
+        const std::size_t n = std::min(kTile - cell % kTile, to.size() - x);
+        for (std::size_t k = 0; k < n; ++k) to[x + k] = t ? t->coverage[cell + k] / 255.0f : 0;
+        x += n;
+    }
+}
+
+PlaneDrawing::PlaneDrawing(const brush::Preset& preset, const HolderOptions& hold, double step, double cell)
+    : hold_(hold), step_(step), tuft_(brush::make_tuft(preset)), fresh_(tuft_), ink_(cell) {}
+
+const PlaneInk& PlaneDrawing::draw(const StrokeSamples& trace) {
+    std::vector<brush::Pose> samples;
+    const StrokeSamples led = lift_off(compensate_tip_lag(trace, hold_), hold_);
+    const std::vector<double> depths = tip_depths<StrokeSample>(led.samples, hold_);
     for (std::size_t i = 0; i < led.samples.size(); ++i) {
         const StrokeSample& s = led.samples[i];
-        poses.push_back(pose_holder({s.position.x, -s.position.y, 0}, 0,
-                                    {.depth = depths[i], .tilt = s.tilt, .roll = s.roll, .time = s.time}, options));
+        samples.push_back(pose_holder({s.position.x, -s.position.y, 0}, 0,
+                                      {.depth = depths[i], .tilt = s.tilt, .roll = s.roll, .time = s.time}, hold_));
     }
-    brush::Tuft tuft = brush::make_tuft(preset);
+    std::vector<brush::Pose> poses = resample(samples, {.step = step_, .lever = tuft_.preset.length});
+    std::size_t alike = 0;
+    while (alike < std::min(poses.size(), poses_.size()) && is_same(poses[alike], poses_[alike])) ++alike;
+    while (!kept_.empty() && kept_.back().n_poses > alike) kept_.pop_back();
+    std::size_t next = 0;
+    if (kept_.empty()) {
+        static_cast<brush::TuftBend&>(tuft_) = fresh_;
+        ink_ = PlaneInk(ink_.cell());
+    } else {
+        next = kept_.back().n_poses;
+        static_cast<brush::TuftBend&>(tuft_) = kept_.back().bend;
+        ink_ = kept_.back().ink;
+    }
+    poses_ = std::move(poses);
+    for (; next < poses_.size(); ++next) {
+        if (next % kKeepEvery == 0 && next > 0 && (kept_.empty() || kept_.back().n_poses < next))
+            kept_.push_back({next, tuft_, ink_});
+        add_stamp(poses_[next], next > 0 ? poses_[next].time - poses_[next - 1].time : 0);
+    }
+    return ink_;
+}
+
+void PlaneDrawing::add_stamp(const brush::Pose& pose, double dt) {
+    const Frame plane_frame;
     const brush::ContactPlane plane;
-    PlaneInk ink(cell);
-    double time = 0;
-    bool first = true;
-    Recycled<footprint::Outline> outlines;
-    for (const brush::Pose& pose : resample(poses, {.step = step, .lever = preset.length})) {
-        const brush::TuftState state = brush::step(tuft, pose, {&plane, 1}, first ? 0 : pose.time - time);
-        time = pose.time;
-        first = false;
-        if (!state.touching) continue;
-        if (tuft.carried) {
-            ink.add(footprint::rasterise_polygons(
-                        footprint::shape_polygons(tuft, state.shape, plane_frame, {.film = kSkinFilm}), plane_frame, 0,
-                        cell),
-                    std::max(0.0, time));
-            continue;
-        }
-        Recycled<footprint::Trail> trails = footprint::find_trails(state, plane_frame, {}, preset.length, kSkinFilm);
-        footprint::cover_upright_hair(trails, brush::upright_hair_of(tuft, plane), plane_frame, kSkinFilm);
-        outlines.clear();
-        for (const footprint::Trail& trail : trails)
-            if (footprint::Outline o = footprint::outline_of(trail, footprint::OutlineOptions{}.points);
-                o.left.size() >= 3)
-                outlines.push_back(std::move(o));
-        ink.add(footprint::rasterise(outlines, plane_frame, 0, cell), std::max(0.0, time));
+    const double cell = ink_.cell();
+    const brush::TuftState state = brush::step(tuft_, pose, {&plane, 1}, dt);
+    if (!state.touching) return;
+    if (tuft_.carried) {
+        ink_.add(
+            footprint::rasterise_polygons(
+                footprint::shape_polygons(tuft_, state.shape, plane_frame, {.film = kSkinFilm}), plane_frame, 0, cell),
+            std::max(0.0, pose.time));
+        return;
     }
-    return ink;
+    Recycled<footprint::Trail> trails = footprint::find_trails(state, plane_frame, {}, tuft_.preset.length, kSkinFilm);
+    footprint::cover_upright_hair(trails, brush::upright_hair_of(tuft_, plane), plane_frame, kSkinFilm);
+    Recycled<footprint::Outline> outlines;
+    for (const footprint::Trail& trail : trails)
+        if (footprint::Outline o = footprint::outline_of(trail, footprint::OutlineOptions{}.points); o.left.size() >= 3)
+            outlines.push_back(std::move(o));
+    ink_.add(footprint::rasterise(outlines, plane_frame, 0, cell), std::max(0.0, pose.time));
+}
+
+PlaneInk plane_ink(const StrokeSamples& trace, const brush::Preset& preset, const HolderOptions& options, double step,
+                   double cell) {
+    return PlaneDrawing(preset, options, step, cell).draw(trace);
 }
 
 }  // namespace tuft::stroke

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "brush/preset/preset.h"
+#include "brush/tuft/tuft.h"
 #include "footprint/outline/footprint.h"
 #include "stroke/placement/placement.h"
 
@@ -26,6 +27,8 @@ class PlaneInk {
     double at(const Vec2& p) const;
     /// Returns the time at which half of the cell at a point was first covered, seconds; negative: never.
     double when(const Vec2& p) const;
+    /// Copies the coverage of a row of cells, from cell (i, j) on, whose centre is cell · (i + ½, j + ½).
+    void copy_row(std::int64_t i, std::int64_t j, std::span<float> to) const;
     double cell() const { return cell_; }
 
   private:
@@ -39,6 +42,33 @@ class PlaneInk {
 
     double cell_;
     std::unordered_map<std::uint64_t, Tile> tiles_;
+};
+
+/// Draws one trace after the other with the same brush, each on an empty plane. Poses that a trace has in common with
+/// the one before, from the first on, are not drawn again; the ink is the same to the bit.
+class PlaneDrawing {
+  public:
+    /// Arguments as those of `plane_ink`.
+    PlaneDrawing(const brush::Preset& preset, const HolderOptions& hold, double step, double cell);
+    /// Returns the ink of a trace, until the next call.
+    const PlaneInk& draw(const StrokeSamples& trace);
+
+  private:
+    static constexpr std::size_t kKeepEvery = 16;  // poses
+    struct Kept {
+        std::size_t n_poses = 0;  // that were drawn
+        brush::TuftBend bend;
+        PlaneInk ink;
+    };
+    void add_stamp(const brush::Pose& pose, double dt);
+
+    HolderOptions hold_;
+    double step_;
+    brush::Tuft tuft_;
+    brush::TuftBend fresh_;
+    PlaneInk ink_;
+    std::vector<brush::Pose> poses_;  // of the trace before
+    std::vector<Kept> kept_;
 };
 
 /// Returns the area that a full brush touches along a flat trace on a plane. Frame: metres, x to the right, y up (−y of

@@ -24,10 +24,18 @@ constexpr std::size_t kCornerReach = 3;  // stations
 constexpr double kNeedle = 24;           // units about an end in which its ink must not reach further than wanted
 constexpr double kNeedleBack = 0.6;      // part of that taken back at once
 constexpr float kDeepest = 24;           // units of depth that count
+constexpr double kGood = 0.98, kSettled = 0.002;  // a path that scores so much, and gains less in a try, stays
+constexpr double kBehind = 0.06;                  // over the tries so far: less than the best by more is given up
 
 struct Errors {
     std::vector<double> left, right, kick;  ///< units, [stations]
     double head = 0, tail = 0;              ///< units by which the ends are to be longer
+};
+
+/// What a drawing of a path shows.
+struct Try {
+    InkScore reached;
+    Errors errors;
 };
 
 /// How the sides and the head of a path are treated when it is corrected.
@@ -219,37 +227,42 @@ stroke::PlaneInk draw_on_plane(std::span<const Station> stations, const BrushHan
 FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& target, const BrushHand& hand,
                        const Pace& pace, const FitOptions& options, const std::vector<Station>& other) {
     const std::vector<float> depths = depths_of(target.wanted);
-    const auto fit_from = [&](const std::vector<Station>& first, const Manner& manner) {
-        const std::vector<double> soft = softness_of(first);
-        FitResult best{.stations = first};
-        std::vector<Station> next = first;
-        for (int t = 0, idle = 0; t < options.tries && idle < options.idle; ++t) {
-            check_interrupt();
-            const stroke::StrokeSamples trace = samples_of(next, hand, pace);
-            const stroke::PlaneInk ink = stroke::plane_ink(trace, hand.preset, hand.hold, options.step * hand.unit,
-                                                           target.wanted.cell * hand.unit);
-            const std::vector<float> coverage = coverage_by(ink, target.wanted, hand.unit);
-            const InkScore reached = score_of(target, depths, coverage);
-            const Errors errors =
-                errors_of(next, manner.first_sides ? first : next, target, coverage, ink, trace, hand.unit);
-            idle = reached.score > best.score + 1e-4 ? 0 : idle + 1;
-            if (reached.score > best.score) best.score = reached.score, best.iou = reached.iou, best.stations = next;
-            ++best.tries;
-            correct(next, first, soft, errors, manner);
-        }
-        return best;
+    const auto try_out = [&](const std::vector<Station>& next, const std::vector<Station>& sides) {
+        check_interrupt();
+        const stroke::StrokeSamples trace = samples_of(next, hand, pace);
+        const stroke::PlaneInk ink =
+            stroke::plane_ink(trace, hand.preset, hand.hold, options.step * hand.unit, target.wanted.cell * hand.unit);
+        const std::vector<float> coverage = coverage_by(ink, target.wanted);
+        return Try{score_of(target, depths, coverage), errors_of(next, sides, target, coverage, ink, trace, hand.unit)};
     };
     FitResult best{.stations = stations};
-    for (const std::vector<Station>* begin : {&stations, &other})
-        for (const Manner& next : kManners) {
-            if (begin->empty() || (best.tries > 0 && best.iou >= options.weak)) continue;
-            FitResult again = fit_from(*begin, next);
-            again.tries += best.tries;
-            if (again.score > best.score)
-                best = std::move(again);
-            else
-                best.tries = again.tries;
+    const auto fit_from = [&](const std::vector<Station>& first, const Try& first_try, const Manner& manner) {
+        const std::vector<double> soft = softness_of(first);
+        FitResult own{.stations = first};
+        std::vector<Station> next = first;
+        for (int t = 1, idle = 0; t <= options.tries && idle < options.idle; ++t) {
+            const Try now = t == 1 ? first_try : try_out(next, manner.first_sides ? first : next);
+            const double gain = now.reached.score - own.score;
+            idle = gain > 1e-4 ? 0 : idle + 1;
+            if (gain > 0) own.score = now.reached.score, own.iou = now.reached.iou, own.stations = next;
+            own.tries += t > 1;
+            if (t > 2 && own.score > kGood && gain < kSettled) break;
+            if (t > 1 && own.score < best.score - kBehind / t) break;
+            correct(next, first, soft, now.errors, manner);
         }
+        own.tries += best.tries;
+        if (own.score > best.score)
+            best = std::move(own);
+        else
+            best.tries = own.tries;
+    };
+    for (const std::vector<Station>* begin : {&stations, &other}) {
+        if (begin->empty() || (best.tries > 0 && best.iou >= options.weak)) continue;
+        const Try first_try = try_out(*begin, *begin);
+        ++best.tries;
+        for (const Manner& manner : kManners)
+            if (&manner == kManners || best.iou < options.weak) fit_from(*begin, first_try, manner);
+    }
     return take_off_knuckles(std::move(best), target, depths, hand, pace, options);
 }
 

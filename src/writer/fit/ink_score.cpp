@@ -1,5 +1,7 @@
 #include "writer/fit/ink_score.h"
 
+#include <cmath>
+
 namespace tuft::writer {
 namespace {
 
@@ -7,11 +9,11 @@ constexpr double kRim = 4;  // units of depth at which a wrong cell counts once
 
 }  // namespace
 
-std::vector<float> coverage_by(const stroke::PlaneInk& ink, const Cells& cells, double unit) {
-    std::vector<float> coverage;
-    coverage.reserve(cells.inside.size());
-    for (int j = 0; j < cells.height; ++j)
-        for (int i = 0; i < cells.width; ++i) coverage.push_back(static_cast<float>(ink.at(cells.centre(i, j) * unit)));
+std::vector<float> coverage_by(const stroke::PlaneInk& ink, const Cells& cells) {
+    const auto i = std::llround(cells.lo.x / cells.cell), j = std::llround(cells.lo.y / cells.cell);
+    std::vector<float> coverage(cells.inside.size());
+    for (int y = 0; y < cells.height; ++y)
+        ink.copy_row(i, j + y, std::span(coverage).subspan(std::size_t(y) * cells.width, std::size_t(cells.width)));
     return coverage;
 }
 

@@ -17,8 +17,9 @@ struct InkScore {
     double score = 0;  ///< B / (B + Σ w d / 4)
 };
 
-/// Returns the coverage by ink at the centres of cells. [cells] `unit`: metres.
-std::vector<float> coverage_by(const stroke::PlaneInk& ink, const Cells& cells, double unit);
+/// Returns the coverage of cells by ink. [cells] Precondition: the ink has the same cells, with `lo` a
+/// corner of one, as `cells_over` makes them.
+std::vector<float> coverage_by(const stroke::PlaneInk& ink, const Cells& cells);
 
 /// Returns the agreement of ink with a target: B cells are covered rightly, and the sums are over those covered
 /// wrongly, each of weight w and d units from the edge. `depths`, `coverage`: [cells of the target].

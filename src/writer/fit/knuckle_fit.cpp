@@ -10,9 +10,10 @@
 namespace tuft::writer {
 namespace {
 
-constexpr double kPrice = 0.02;  // of the score, for a knuckle of twice the least curvature
+constexpr double kPrice = 0.01;  // of the score, for a knuckle of the least curvature
 constexpr double kSoft = 1.5;    // stations of the Gaussian over which a place is changed
 constexpr double kHead = 45;     // units from the first station within which a knuckle is the head's
+constexpr double kSame = 30;     // units by which a knuckle moves when the path is changed, at most
 constexpr int kRounds = 3;       // over the knuckles of a stroke
 constexpr double kLeastGain = 5e-4;
 
@@ -33,20 +34,20 @@ class KnuckleFit {
           hand_(hand),
           pace_(pace),
           options_(options),
-          turns_(edge_turns(target.wanted, coverage_of(target.wanted), 0.5 * kKnuckle)) {}
+          turns_(edge_turns(target.wanted, coverage_of(target.wanted), 0.5 * kKnuckle)),
+          drawing_(hand.preset, hand.hold, options.fine_step * hand.unit, target.wanted.cell * hand.unit) {}
 
     Drawing draw(std::vector<Station> stations) {
         check_interrupt();
         ++draws_;
         Drawing out{.stations = std::move(stations)};
         const Cells& wanted = target_.wanted;
-        const stroke::PlaneInk ink = draw_on_plane(out.stations, hand_, pace_, options_.fine_step, wanted.cell);
-        const std::vector<float> coverage = coverage_by(ink, wanted, hand_.unit);
+        const std::vector<float> coverage = coverage_by(drawing_.draw(samples_of(out.stations, hand_, pace_)), wanted);
         out.reached = score_of(target_, depths_, coverage);
         out.value = out.reached.score;
         for (const EdgeTurn& turn : knuckles_of(wanted, coverage, turns_)) {
             if (is_under_another(turn.at)) continue;
-            out.value -= kPrice * std::min(1.0, turn.curvature / (2 * kKnuckle));
+            out.value -= kPrice * turn.curvature / kKnuckle;
             out.knuckles.push_back(turn);
         }
         std::stable_sort(out.knuckles.begin(), out.knuckles.end(),
@@ -72,6 +73,7 @@ class KnuckleFit {
     const Pace& pace_;
     const FitOptions& options_;
     std::vector<EdgeTurn> turns_;
+    stroke::PlaneDrawing drawing_;
     int draws_ = 0;
 };
 
@@ -102,9 +104,9 @@ std::vector<std::pair<std::size_t, Change>> changes_at(const std::vector<Station
     for (std::size_t i = 0; i < s.size(); ++i)
         if (glm::distance(s[i].centre, knuckle) < glm::distance(s[near].centre, knuckle)) near = i;
     const Vec2 out = unit_of(knuckle - s[near].centre);
-    std::vector<std::pair<std::size_t, Change>> all{{near, {-3.0 * out, 1}}, {near, {Vec2(0), 0.88}},
-                                                    {near, {-6.0 * out, 1}}, {near, {Vec2(0), 1.12}},
-                                                    {near, {3.0 * out, 1}},  {near, {3.0 * out, 0.88}}};
+    std::vector<std::pair<std::size_t, Change>> all{{near, {-3.0 * out, 1}},   {near, {Vec2(0), 0.88}},
+                                                    {near, {Vec2(0), 1.12}},   {near, {3.0 * out, 1}},
+                                                    {near, {3.0 * out, 0.88}}, {near, {6.0 * out, 0.8}}};
     if (glm::distance(s[0].centre, knuckle) < kHead && s.size() > 4) {
         const Vec2 on = unit_of(s[2].centre - s[0].centre), left(-on.y, on.x);
         for (const Vec2& shift : {4.0 * left, -4.0 * left, 4.0 * on, -4.0 * on}) all.push_back({0, {shift, 1}});
@@ -112,6 +114,11 @@ std::vector<std::pair<std::size_t, Change>> changes_at(const std::vector<Station
         all.push_back({0, {Vec2(0), 0.7}});
     }
     return all;
+}
+
+bool has_near(const std::vector<EdgeTurn>& knuckles, const Vec2& p) {
+    return std::any_of(knuckles.begin(), knuckles.end(),
+                       [&](const EdgeTurn& k) { return glm::distance(k.at, p) < kSame; });
 }
 
 }  // namespace
@@ -126,7 +133,7 @@ FitResult take_off_knuckles(FitResult fitted, const FitTarget& target, const std
         const std::vector<EdgeTurn> knuckles = best.knuckles;
         for (const EdgeTurn& knuckle : knuckles)
             for (const auto& [at, change] : changes_at(best.stations, knuckle.at)) {
-                if (!fit.may_draw()) break;
+                if (!fit.may_draw() || !has_near(best.knuckles, knuckle.at)) break;
                 Drawing next = fit.draw(changed(best.stations, at, change));
                 if (next.value > best.value) best = std::move(next);
             }

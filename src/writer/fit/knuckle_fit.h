@@ -7,10 +7,10 @@
 namespace tuft::writer {
 
 /// Returns the stations with the fewest knuckles among those of `fitted` with heads, corners and tails moved where a
-/// knuckle is. Near each, the path moves by 3 and 6 units away from it, the half width changes by an eighth, a head
-/// begins sooner, later or to the side. What is kept raises
+/// knuckle is. Near each, until it is gone, the path moves by 3 units away from it or by 3 or 6 towards it, the half
+/// width changes by an eighth, a head begins sooner, later or to the side. What is kept raises
 ///
-///     score − 0.02 Σ severity,  severity = min(1, curvature / (2 · kKnuckle)) for each knuckle,
+///     score − 0.01 Σ curvature / kKnuckle  over the knuckles,
 ///
 /// `score` as in `fit_stations`. Knuckles under other strokes do not count. At most `options.knuckle_tries` drawings in
 /// steps of `options.fine_step`; one where the stroke has no knuckle. Deterministic.
