@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 
 #include "core/error.h"
+#include "core/files/files.h"
 #include "writer/glyphs/glyph_source.h"
 
 namespace tuft::writer {
@@ -54,6 +56,23 @@ TEST(KanjiSvg, StrokesHaveTheirTypeAndTheSquareOf109) {
     // 0.1 of the side and the inset of 12 units; half way up.
     EXPECT_NEAR(g.strokes[0].median.front().x, 0.1 * kSide + 12, 1e-6);
     EXPECT_NEAR(g.strokes[0].median.front().y, 0.5 * kSide, 1e-6);
+}
+
+// KanjiVG's folder has other forms of characters beside them. They are no fonts.
+TEST(KanjiSvg, AFolderWithOtherFormsOfCharactersIsRead) {
+    const auto folder = std::filesystem::path(testing::TempDir()) / "tuft-kanjivg";
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    const std::string one = "<svg><path d='M10,54 L98,54'/></svg>", other = "<svg><path d='M54,10 L54,98'/></svg>";
+    write_file(folder / "04e00.svg", one.data(), one.size());
+    write_file(folder / "04e00-Kaisho.svg", other.data(), other.size());
+    const auto source = open_glyphs(folder);
+    const auto glyph = source->find(U'一');
+    ASSERT_TRUE(glyph);
+    EXPECT_EQ(glyph->strokes.at(0).median.front().y,
+              glyph->strokes.at(0).median.back().y);  // level: not the other form
+    EXPECT_FALSE(source->find(U'二'));
+    std::filesystem::remove_all(folder);
 }
 
 TEST(KanjiSvg, DeepAndEmptyOnesAreRefused) {

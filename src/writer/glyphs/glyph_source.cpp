@@ -130,11 +130,11 @@ std::unique_ptr<GlyphSource> open_folder(const fs::path& path) {
         if (kind == ".json") characters = true;
         if (kind != ".svg") continue;
         const std::string stem = file.stem().string();
-        const bool code = stem.size() == 5 && stem.find_first_not_of("0123456789abcdef") == std::string::npos;
-        if (code)
-            characters = true;
-        else
+        const std::string code = stem.substr(0, stem.find('-'));
+        if (code.size() != 5 || code.find_first_not_of("0123456789abcdef") != std::string::npos)
             fonts.push_back(file);
+        else if (code == stem)  // beside it KanjiVG has other forms of a character, such as 04e14-Kaisho.svg
+            characters = true;
     }
     if (error) throw Error(path.string(), Message("the folder cannot be read"));
     for (auto* list : {&books, &fonts, &outlines}) std::sort(list->begin(), list->end());

@@ -29,7 +29,8 @@ class GlyphSource {
 
 /// Opens a source by what it is:
 /// - a folder with `CHARACTER.json` (hanzi-writer-data: "strokes" as SVG paths, "medians"),
-/// - a folder with `CODE.svg`, five hexadecimal digits (KanjiVG: a path of each stroke, `kvg:type`),
+/// - a folder with `CODE.svg`, five hexadecimal digits (KanjiVG: a path of each stroke, `kvg:type`; `CODE-FORM.svg` is
+///   not read),
 /// - `graphics.txt` (Make Me a Hanzi), one JSON object a line with "character", or a folder with it,
 /// - an SVG font (`font` with open paths in `glyph`), or a folder with some,
 /// - an outline font (.ttf, .otf, .ttc, .woff2 …) through FreeType.
