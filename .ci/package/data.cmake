@@ -23,6 +23,8 @@ tuft_manual(tuft tuft)
 install(DIRECTORY samples/strokes DESTINATION ${CMAKE_INSTALL_DATADIR}/tuft/samples COMPONENT tuft
   FILES_MATCHING PATTERN "*.inkml" PATTERN "*.svg" PATTERN "README.md")
 install(DIRECTORY samples/inks DESTINATION ${CMAKE_INSTALL_DATADIR}/tuft/samples COMPONENT tuft FILES_MATCHING PATTERN "*.toml")
+install(DIRECTORY samples/variants DESTINATION ${CMAKE_INSTALL_DATADIR}/tuft/samples COMPONENT tuft FILES_MATCHING PATTERN "*.toml")
+install(DIRECTORY models/glyphs models/writer DESTINATION ${CMAKE_INSTALL_DATADIR}/tuft/models COMPONENT tuft)
 install(DIRECTORY models/ DESTINATION ${CMAKE_INSTALL_DATADIR}/tuft/models COMPONENT tuft FILES_MATCHING PATTERN "*.ply" PATTERN "*.md")
 install(FILES samples/hello/main.cpp samples/hello/CMakeLists.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}-dev/examples/hello COMPONENT dev)
 

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <numeric>
 #include <random>
@@ -132,6 +133,21 @@ TEST_F(Files, MissingEmptyAndFolderAreErrors) {
     std::ofstream(folder_ / "empty");
     EXPECT_THROW(read_file(folder_ / "empty"), Error);
     EXPECT_THROW(write_file(folder_ / "no" / "such" / "x", "x", 1), Error);
+}
+
+TEST(ShippedFiles, AnEmptyVariableNamesNoFolder) {
+    const char* set = std::getenv("TUFT_DATA");
+    const std::string kept = set ? set : "";
+    ::unsetenv("TUFT_DATA");
+    const std::filesystem::path unnamed = data_folder();
+    ::setenv("TUFT_DATA", "", 1);
+    EXPECT_EQ(data_folder(), unnamed);
+    ::setenv("TUFT_DATA", "/elsewhere", 1);
+    EXPECT_EQ(data_folder(), "/elsewhere");
+    if (set)
+        ::setenv("TUFT_DATA", kept.c_str(), 1);
+    else
+        ::unsetenv("TUFT_DATA");
 }
 
 }  // namespace

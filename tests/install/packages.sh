@@ -45,7 +45,8 @@ quietly 'apt-get -qq update; apt-get -qq install -y --no-install-recommends /deb
 inside 'tuft --version --json | grep -q "\"data\": \"/usr/share/tuft\""' || fail "the installed data is not found"
 quietly 'cd /root; tuft paint /usr/share/tuft/models/bowl.ply --strokes /usr/share/tuft/samples/strokes/qi-shang-ba-xia.inkml \
   --atlas-size 512 --project bowl.tuft --export bowl.glb --preview bowl.png --size 320x240 --threads 2
-  tuft inspect bowl.glb | grep -q "UVs: "; test -s bowl.png; tuft brush | grep -q wolf-medium'
+  tuft inspect bowl.glb | grep -q "UVs: "; test -s bowl.png; tuft brush | grep -q wolf-medium
+  tuft write models/bowl.ply --text 春 --style line --size 8 --atlas-size 512 --preview text.png; test -s text.png'
 
 echo "== models by the importer"  # a program of its own, with libraries of its own
 cp "$(dirname "$0")"/../fuzz/corpus/fbx/box.fbx "$(dirname "$0")"/../fuzz/corpus/dae/box.dae "$root/root/"

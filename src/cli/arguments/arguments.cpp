@@ -44,15 +44,18 @@ void check_no_empty_values(const CLI::App& app) {
 
 CLI::App* add_paint(CLI::App& app, Paint& paint) {
     auto* command = app.add_subcommand("paint", "paint recorded strokes onto a model, or go on with a project");
-    command->add_option("MODEL", paint.model, std::string("mesh (") + io::kModelFormats + ") or project")->required();
-    command->add_option("--strokes", paint.strokes, "InkML files, painted in the order given")->required();
+    allow_shipped(command->add_option("MODEL", paint.model, std::string("mesh (") + io::kModelFormats + ") or project"))
+        ->required();
+    allow_shipped(command->add_option("--strokes", paint.strokes, "InkML files, painted in the order given"))
+        ->required();
     add_paint_options(command, paint);
     return command;
 }
 
 CLI::App* add_write(CLI::App& app, Write& write) {
     auto* command = app.add_subcommand("write", "write a text onto a model, as a calligrapher does");
-    command->add_option("MODEL", write.model, std::string("mesh (") + io::kModelFormats + ") or project")->required();
+    allow_shipped(command->add_option("MODEL", write.model, std::string("mesh (") + io::kModelFormats + ") or project"))
+        ->required();
     add_paint_options(command, write);
     add_write_options(command, write);
     return command;
@@ -60,7 +63,7 @@ CLI::App* add_write(CLI::App& app, Write& write) {
 
 CLI::App* add_inspect(CLI::App& app, Inspect& inspect) {
     auto* command = app.add_subcommand("inspect", "say what is in a mesh or a project, and what is wrong with it");
-    command->add_option("FILE", inspect.file, "mesh or project")->required();
+    allow_shipped(command->add_option("FILE", inspect.file, "mesh or project"))->required();
     add_reading(command, inspect, "unit of the model file (default: a guess from its size)");
     auto* spot =
         add_point(command, "--at", inspect.at_mm, "say which pigments lie at this point of a project, in millimetres");
@@ -72,7 +75,7 @@ CLI::App* add_inspect(CLI::App& app, Inspect& inspect) {
 
 CLI::App* add_unwrap(CLI::App& app, Unwrap& unwrap) {
     auto* command = app.add_subcommand("unwrap", "make a texture atlas for a model");
-    command->add_option("MODEL", unwrap.model, "mesh")->required();
+    allow_shipped(command->add_option("MODEL", unwrap.model, "mesh"))->required();
     command->add_option("-o,--output", unwrap.output, "write the model with its UVs (.obj or .glb)")->required();
     command->add_option("--picture", unwrap.picture, "write a picture of the atlas (.png)");
     add_surface(command, unwrap.surface);
@@ -81,7 +84,7 @@ CLI::App* add_unwrap(CLI::App& app, Unwrap& unwrap) {
 
 CLI::App* add_decimate(CLI::App& app, Decimate& decimate) {
     auto* command = app.add_subcommand("decimate", "make a working copy of a large scan with fewer triangles");
-    command->add_option("MODEL", decimate.model, "mesh")->required();
+    allow_shipped(command->add_option("MODEL", decimate.model, "mesh"))->required();
     command->add_option("-o,--output", decimate.output, "write the working copy (.ply)")->required();
     command->add_option("--triangles", decimate.triangles, "most triangles of the copy")
         ->check(number_in(4, kMostTexels, "POSITIVE"));
@@ -97,7 +100,7 @@ CLI::App* add_decimate(CLI::App& app, Decimate& decimate) {
 CLI::App* add_replay(CLI::App& app, Replay& replay) {
     auto* command = app.add_subcommand("replay", "paint a project's strokes again, on the same or a revised model");
     command->add_option("PROJECT", replay.project, "project file (.tuft)")->required();
-    auto* model = command->add_option("--model", replay.model, "paint onto this revised mesh instead");
+    auto* model = allow_shipped(command->add_option("--model", replay.model, "paint onto this revised mesh instead"));
     command
         ->add_option("--follow", replay.follow,
                      "where the revised model, or a part of it, was moved, turned or scaled, its strokes go with it: "
@@ -256,7 +259,7 @@ CLI::App* add_mask(CLI::App& app, MaskWork& mask) {
 
 CLI::App* add_render(CLI::App& app, Render& render) {
     auto* command = app.add_subcommand("render", "draw a picture of a model or a project");
-    command->add_option("FILE", render.file, "mesh or project")->required();
+    allow_shipped(command->add_option("FILE", render.file, "mesh or project"))->required();
     command->add_option("-o,--output", render.output, "picture (.png); with --turntable a number is added")->required();
     command->add_option("--turntable", render.turntable, "draw N pictures all round")->check(number_in(1, 3600));
     add_reading(command, render, "unit of a model file (default: a guess from its size)");
@@ -321,7 +324,7 @@ CLI::App* add_ink(CLI::App& app, InkWork& ink) {
 
 CLI::App* add_bench(CLI::App& app, Bench& bench) {
     auto* command = app.add_subcommand("bench", "measure the speed on this machine");
-    command->add_option("MODEL", bench.model, "measure on this mesh instead of the built-in ones");
+    allow_shipped(command->add_option("MODEL", bench.model, "measure on this mesh instead of the built-in ones"));
     command->add_flag("--quick", bench.quick, "smaller models, fewer repeats");
     command->add_option("--atlas-size", bench.surface.atlas_size, "texels along the side of the atlas")
         ->check(number_in(1, kMostTexels, "POSITIVE"));

@@ -22,7 +22,7 @@ CLI::App* add_film(CLI::App& app, Film& film) {
                   "left, top, bottom or view (that of --view), such as front,top,view; or key frames (.toml)")
         ->type_name("PATH");
     s->add_flag("--no-brush", film.no_brush, "film the ink alone");
-    s->add_option("--model", film.replay.model, "paint onto this revised mesh instead");
+    allow_shipped(s->add_option("--model", film.replay.model, "paint onto this revised mesh instead"));
     s->add_option("--brush", film.replay.brush, "use this brush for every stroke");
     s->add_option("--ink", film.replay.ink,
                   "use this ink for every stroke: a name, a .toml file or a colour such as '#c03020'");

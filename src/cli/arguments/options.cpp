@@ -7,6 +7,7 @@
 #include <optional>
 #include <sstream>
 
+#include "core/files/shipped_file.h"
 #include "core/text/text.h"
 
 namespace tuft::cli {
@@ -42,6 +43,10 @@ CLI::Validator number_in(double lo, double hi, const std::string& name) {
             return fmt::format("'{}' is not a number from {:g} to {:g}", excerpt(text), lo, hi);
         },
         name.empty() ? fmt::format("{:g} to {:g}", lo, hi) : name);
+}
+
+CLI::Option* allow_shipped(CLI::Option* option) {
+    return option->transform([](const std::string& path) { return or_shipped(path).string(); }, "");
 }
 
 void add_common(CLI::App* app, Common& c) {

@@ -32,6 +32,8 @@ std::optional<double> number_of(const std::string& text);
 std::vector<double> numbers(const std::string& text, char separator, std::size_t count, double most);
 /// Checks every number of the command line: finite, and from `lo` to `hi`, which the help calls `name`.
 CLI::Validator number_in(double lo, double hi, const std::string& name = {});
+/// A relative path that leads nowhere is taken from the shipped files (core/files/shipped_file.h). Returns `option`.
+CLI::Option* allow_shipped(CLI::Option* option);
 void add_common(CLI::App* app, Common& c);
 void add_store(CLI::App* app, Surface& s);
 void add_reading(CLI::App* app, FileReading& reading, const std::string& what);

@@ -5,8 +5,9 @@ namespace tuft::cli {
 
 CLI::App* add_variants(CLI::App& app, VariantsWork& work) {
     auto* s = app.add_subcommand("variants", "paint many variants of a decoration, here or on a scheduler");
-    s->add_option("PLAN", work.plan,
-                  "plan (.toml): models x stroke files x inks x brushes x tolerances; or the folder of its tasks")
+    allow_shipped(
+        s->add_option("PLAN", work.plan,
+                      "plan (.toml): models x stroke files x inks x brushes x tolerances; or the folder of its tasks"))
         ->required();
     s->add_option("-o,--output", work.output, "folder of the tasks and results of a plan");
     s->add_flag("--run", work.run,

@@ -69,7 +69,7 @@ void write_file(const fs::path& path, const void* data, std::size_t size) {
 }
 
 fs::path data_folder() {
-    if (const char* from_env = std::getenv("TUFT_DATA")) return from_env;
+    if (const char* from_env = std::getenv("TUFT_DATA"); from_env && *from_env) return from_env;
     std::error_code ec;
     const fs::path program = fs::read_symlink("/proc/self/exe", ec);
     if (!ec) {

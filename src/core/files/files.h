@@ -22,8 +22,8 @@ void write_atomically(const std::filesystem::path& path,
 /// Writes bytes to `path` with `write_atomically`.
 void write_file(const std::filesystem::path& path, const void* data, std::size_t size);
 
-/// Returns the folder of the shipped files (`models`, `brushes`, `inks`): $TUFT_DATA when it is set. Otherwise the
-/// first that exists: the installed share/tuft beside the program; the source tree of the build; `tuft` in one of
+/// Returns the folder of the shipped files (`models`, `brushes`, `inks`): $TUFT_DATA when it is not empty. Otherwise
+/// the first that exists: the installed share/tuft beside the program; the source tree of the build; `tuft` in one of
 /// $XDG_DATA_DIRS (/usr/local/share and /usr/share).
 std::filesystem::path data_folder();
 
