@@ -201,8 +201,10 @@ bool Jobs::remove_damaged(std::size_t i) const {
 
 Jobs lay_out(const Plan& plan, const std::vector<Task>& tasks, const fs::path& folder) {
     std::error_code ec;
-    if (fs::exists(folder, ec) && !fs::exists(folder / "plan.json", ec) && !fs::is_empty(folder, ec))
-        throw Error(folder.string(), "is neither empty nor a folder of 'tuft variants'");
+    if (!fs::exists(folder / "plan.json", ec))
+        for (const auto& entry : fs::directory_iterator(folder, ec))  // one that was stopped here has these two
+            if (entry.path().filename() != "tasks" && entry.path().filename() != "results")
+                throw Error(folder.string(), "is neither empty nor a folder of 'tuft variants'");
     for (const char* part : {"tasks", "results"}) make_folder(folder / part);
     nlohmann::json j{{"format", kFormat}, {"name", plan.name}, {"folder", plan.folder.string()}};
     for (std::size_t i = 0; i < tasks.size(); ++i) {

@@ -148,6 +148,13 @@ TEST_F(JobsFolder, OtherFoldersAreLeftAlone) {
     }
 }
 
+// A full disk or a power cut while the tasks are written leaves them without their plan.
+TEST_F(JobsFolder, AFolderThatWasStoppedHalfWayIsLaidOutAgain) {
+    jobs();
+    fs::remove(folder_ / "jobs" / "plan.json");
+    EXPECT_EQ(jobs().size(), 4u);
+}
+
 TEST_F(JobsFolder, CoverageFromForeignBytesIsRefused) {
     const Coverage good = outcome(Task{.seed = 3}).coverage;
     const std::vector<char> bytes = bytes_of(good);
