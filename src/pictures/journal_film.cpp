@@ -5,6 +5,7 @@
 #include <iterator>
 #include <memory>
 #include <numeric>
+#include <optional>
 
 #include "core/error.h"
 #include "ink/composite/composite.h"
@@ -63,15 +64,27 @@ class Camera {
 
     /// Returns the frame at `part` of the film, with the brush of the stroke in work; null: without one.
     const render::Image& shoot(double part, const stroke::StrokeSession* session) {
+        pass(part);
+        return draw(session);
+    }
+    /// Does what `shoot` does, but for the picture: the frames after it are the same to the bit.
+    void pass(double part) {
         part_ = part;
         take_changes();
-        return draw(session);
+        const render::View view = view_at(part_);
+        standing_ = stands(view);
+        const bool moved = !(view == options_.view);
+        options_.view = view;
+        choose_light(standing_ ? render::PictureSeries::Length::many : render::PictureSeries::Length::moving,
+                     standing_ && moved);
     }
     /// Returns the frame of the finished work, in its own light: the picture of `tuft render`.
     const render::Image& shoot_finished() {
         part_ = 1;
         shown_ = make_look(model_, &painting_, "", film_.picture.lights == render::Lights::raking);
-        return draw_standing(true);
+        options_.view = view_at(part_);
+        choose_light(render::PictureSeries::Length::one, true);
+        return draw_series();
     }
     /// Reports; false: stop.
     bool go_on() const { return !film_.progress || film_.progress("film", part_); }
@@ -98,8 +111,7 @@ class Camera {
         parts_ = painting_.parts().table();
         shown_ = make_look(model_, &painting_, "", false);
         compose_all();
-        standing_.reset();
-        moving_.reset();
+        lit_for_.reset();
         return true;
     }
 
@@ -138,18 +150,18 @@ class Camera {
         return surface_ != painting_.parts().surface() || difference_ > kMost * channels;
     }
 
-    /// Makes the series of one camera, or of one that moves, in the light of the paint that is seen.
-    void find_light(std::unique_ptr<render::GlassSeries>& series, const render::PictureOptions& options,
-                    render::PictureSeries::Length length) {
-        standing_.reset();
-        moving_.reset();
+    /// Chooses the light of a series of one camera, or of one that moves: that of the paint that is seen, where the
+    /// series is another (`anew`), or has none yet, or the paint is too far from its light.
+    void choose_light(render::PictureSeries::Length length, bool anew) {
+        if (!anew && lit_for_ == length && !paint_is_far()) return;
+        series_.reset();
+        lit_for_ = length;
+        lit_from_ = options_.view;
         lit_ = shown_;
         lit_.point_to_maps(model_);
         of_tile_.assign(model_.texels.slot_of_tile.size(), 0);
         difference_ = 0;
         surface_ = painting_.parts().surface();
-        series = std::make_unique<render::GlassSeries>(*model_.mesh, *surface_, lit_.appearance,
-                                                       glass_of(lit_, painting_), options, length);
     }
 
     render::View view_at(double part) const {
@@ -162,38 +174,39 @@ class Camera {
     }
 
     const render::Image& draw(const stroke::StrokeSession* session) {
-        const render::View view = view_at(part_);
-        const bool standing = stands(view), moved = !(view == options_.view);
-        options_.view = view;
-        const render::Image& picture = standing ? draw_standing(moved || !standing_ || paint_is_far()) : draw_moving();
+        const render::Image& picture = draw_series();
         if (!session || !film_.brush) return picture;
         frame_ = picture;
         const brush::Tuft& tuft = session->brush();
-        render::draw_brush_in_picture(frame_, (standing ? standing_ : moving_)->camera(), *surface_, tuft,
-                                      session->tuft(), kHolder * tuft.preset.length);
+        render::draw_brush_in_picture(frame_, series_->camera(), *surface_, tuft, session->tuft(),
+                                      kHolder * tuft.preset.length);
         return frame_;
     }
 
-    const render::Image& draw_standing(bool anew) {
-        options_.view = view_at(part_);
-        if (anew)
-            find_light(standing_, options_,
-                       part_ < 1 ? render::PictureSeries::Length::many : render::PictureSeries::Length::one);
-        return standing_->draw(shown_.appearance, shown_.transmission.texels, std::exchange(changed_, {}));
-    }
-
-    /// A frame that is seen for a moment, from a camera that never stands there: less light samples and rays.
-    const render::Image& draw_moving() {
+    /// Options of the series. Frames that are seen for a moment, from a camera that never stands there, have less light
+    /// samples and rays.
+    render::PictureOptions series_options() const {
         render::PictureOptions options = options_;
+        options.view = lit_from_;
+        if (lit_for_ != render::PictureSeries::Length::moving) return options;
         options.edge_samples = 4;
         options.light_samples = 16;
         options.light_step = std::clamp(options.height / kLightRows, 1, kMostLightStep);
-        if (!moving_ || paint_is_far())
-            find_light(moving_, options, render::PictureSeries::Length::moving);
-        else
-            moving_->look_from(options_.view);
-        changed_.clear();
-        return moving_->draw(shown_.appearance, shown_.transmission.texels);
+        return options;
+    }
+
+    /// Draws what is seen, in the chosen light.
+    const render::Image& draw_series() {
+        const bool first = !series_;
+        if (first)
+            series_ = std::make_unique<render::GlassSeries>(*model_.mesh, *surface_, lit_.appearance,
+                                                            glass_of(lit_, painting_), series_options(), *lit_for_);
+        std::vector<std::uint32_t> changed = std::exchange(changed_, {});
+        if (lit_for_ == render::PictureSeries::Length::moving) {
+            changed.clear();
+            if (!first || !(lit_from_ == options_.view)) series_->look_from(options_.view);
+        }
+        return series_->draw(shown_.appearance, shown_.transmission.texels, changed);
     }
 
     static constexpr double kMoment = 1e-3;  // of the film
@@ -210,8 +223,11 @@ class Camera {
     std::vector<double> of_tile_;         ///< difference of both, by tile
     double difference_ = 0;
     std::shared_ptr<const mesh::SurfaceQuery> surface_;  ///< of the visible parts, which the series draw
-    std::unique_ptr<render::GlassSeries> standing_, moving_;
-    stroke::PartTable parts_;  ///< of the last picture
+    bool standing_ = false;
+    std::optional<render::PictureSeries::Length> lit_for_;  ///< series that the light is chosen for
+    render::View lit_from_;                                 ///< its first view
+    std::unique_ptr<render::GlassSeries> series_;           ///< null until its first picture
+    stroke::PartTable parts_;                               ///< of the last picture
     render::Image frame_;
 };
 
@@ -226,8 +242,14 @@ void shoot(std::vector<stroke::JournalEntry> entries, const Timeline& timeline, 
     const int last = timeline.frames - 1;
     int next = 0;
     const auto take = [&](double until, const stroke::StrokeSession* session) {
-        for (; next < last && timeline.time(next) <= until; ++next)
-            sink.add(view_of(camera.shoot(timeline.part(next), session)));
+        for (; next < last && timeline.time(next) <= until; ++next) {
+            if (sink.has_next()) {
+                camera.pass(timeline.part(next));
+                sink.pass();
+            } else {
+                sink.add(view_of(camera.shoot(timeline.part(next), session)));
+            }
+        }
     };
     // What comes before all work, such as the substrates of parts, is in the first frame.
     const auto first = static_cast<std::size_t>(
@@ -256,8 +278,11 @@ void shoot(std::vector<stroke::JournalEntry> entries, const Timeline& timeline, 
         take(passed, nullptr);
     }
     painting.replay(std::move(unseen), go_on);
+    int still = 0;
+    for (; still <= timeline.still && sink.has_next(); ++still) sink.pass();
+    if (still > timeline.still) return;
     const render::Image& finished = camera.shoot_finished();
-    for (int k = 0; k <= timeline.still; ++k) sink.add(view_of(finished));
+    for (; still <= timeline.still; ++still) sink.add(view_of(finished));
 }
 
 }  // namespace

@@ -110,13 +110,44 @@ TEST_F(FilmCommand, LeavesNoHalfFilm) {
     EXPECT_EQ(failed.error_lines(), 1) << failed.err;
     const Ran stopped = tuft(film + " --seconds 600", "timeout -s INT 2");
     EXPECT_NE(stopped.status, 0);
-    const Ran frames =
-        tuft("film " + p + kView + "--no-cache -o " + path("frames") + " --seconds 600", "timeout -s INT 2");
-    EXPECT_NE(frames.status, 0);
     const Ran none = tuft(film, "PATH=/nonexistent");
     EXPECT_EQ(none.status, 1);
     EXPECT_NE(none.err.find("ffmpeg"), std::string::npos) << none.err;
     EXPECT_EQ(files(), before);
+}
+
+// A film that is killed after some frames, and stopped after some more, is to the bit the one that is not, where the
+// camera stands and where the light goes on from frame to frame as it moves. Frames that were there are not drawn
+// again.
+TEST_F(FilmCommand, GoesOnWhereItWasKilledOrStopped) {
+    const std::string film = "film " + project() + " --size 40x30 --end 0.04 --quiet --camera front,view ",
+                      length = "--seconds 0.6 -o ", whole = path("whole"), cut = path("cut");
+    ASSERT_EQ(tuft(film + length + whole).status, 0);
+    const auto end_at = [&](const char* signal, const char* frame) {
+        return tuft(film + length + cut + " & p=$!; until test -e '" + cut + "/" + frame +
+                    "'; do kill -0 $p 2>/dev/null || exit 9; sleep 0.01; done; kill -" + signal +
+                    " $p; wait $p 2>/dev/null; true");
+    };
+    EXPECT_EQ(end_at("KILL", "frame-00002.png").status, 0);
+    struct stat first {
+    }, later{};
+    ASSERT_EQ(::stat((cut + "/frame-00002.png").c_str(), &first), 0);
+    EXPECT_EQ(end_at("INT", "frame-00004.png").status, 0);
+    ASSERT_FALSE(fs::exists(cut + "/frame-00016.png")) << "it was not stopped in time";
+    const Ran other = tuft(film + "--seconds 2 -o " + cut);
+    EXPECT_EQ(other.status, 1);
+    EXPECT_NE(other.err.find("another film"), std::string::npos) << other.err;
+    ASSERT_EQ(tuft(film + length + cut + " --threads 1").status, 0);
+    ASSERT_EQ(::stat((cut + "/frame-00002.png").c_str(), &later), 0);
+    EXPECT_EQ(first.st_ino, later.st_ino);
+    std::size_t frames = 0;
+    for (const auto& entry : fs::directory_iterator(whole)) {
+        const std::string name = entry.path().filename();
+        EXPECT_EQ(read(entry.path()), read(cut + "/" + name)) << name;
+        ++frames;
+    }
+    EXPECT_EQ(frames, 16U);
+    EXPECT_EQ(std::distance(fs::directory_iterator(cut), fs::directory_iterator()), 16);
 }
 
 // ffmpeg of its own accord ends a film that the disk has no room for with status 0 where the last bytes are missing.

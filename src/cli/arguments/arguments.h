@@ -277,6 +277,7 @@ struct Film {
     double still_seconds = 2;      ///< of the finished work at the end
     std::string camera = "still";  ///< still | turntable | VIEW,VIEW,... | FILE.toml
     bool no_brush = false;
+    std::vector<std::string> given;  ///< names and values of all options that change its frames
     Common common;
 };
 

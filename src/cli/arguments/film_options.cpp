@@ -1,13 +1,36 @@
+#include <algorithm>
+#include <array>
+#include <string_view>
+
 #include "cli/arguments/options.h"
 
 namespace tuft::cli {
+namespace {
+
+/// Names and values of the given options that change the frames of a film.
+std::vector<std::string> given_options(const CLI::App& command) {
+    constexpr std::array<std::string_view, 5> kSameFrames{"output", "threads", "json", "quiet", "no-cache"};
+    std::vector<std::string> words;
+    for (const CLI::Option* option : command.get_options()) {
+        if (option->count() == 0) continue;
+        const std::string name = option->get_single_name();
+        if (std::find(kSameFrames.begin(), kSameFrames.end(), name) != kSameFrames.end()) continue;
+        words.push_back(name);
+        words.insert(words.end(), option->results().begin(), option->results().end());
+    }
+    return words;
+}
+
+}  // namespace
 
 CLI::App* add_film(CLI::App& app, Film& film) {
     auto* s = app.add_subcommand("film", "film how a project was painted, as a time-lapse with the brush in it");
     s->add_option("PROJECT", film.replay.project, "project file (.tuft)")->required();
     s->add_option("-o,--output", film.output,
-                  ".mp4 or .gif (by ffmpeg, where it is installed), else a folder for the frames (.png)")
+                  ".mp4 or .gif (by ffmpeg, where it is installed), else a folder for the frames (.png); frames that "
+                  "were stopped are continued by the same command")
         ->required();
+    s->final_callback([s, &film] { film.given = given_options(*s); });
     auto* seconds = s->add_option("--seconds", film.seconds, "length of the film without its end (default: 20)")
                         ->check(number_in(0.1, 3600.0));
     s->add_option("--speed", film.speed,

@@ -8,6 +8,8 @@
 #include "cli/steps/commands.h"
 #include "cli/steps/steps.h"
 #include "core/error.h"
+#include "core/files/disk_cache.h"
+#include "core/files/files.h"
 #include "io/image/film_file.h"
 #include "io/project/appearance.h"
 #include "io/project/restore.h"
@@ -26,6 +28,19 @@ pictures::FilmOptions film_options(const Film& a, const stroke::Model& model, Co
             .path = camera_path(a.camera, a.replay.view, model),
             .picture = picture_options(a.replay.view, model),
             .progress = console.progress()};
+}
+
+/// Names all that the frames depend on: the options, and the content of each file that one of them names.
+std::string content_of(const Film& a) {
+    CacheKey key("film 1");
+    std::error_code ec;
+    for (const std::string& word : a.given) {
+        key.add_text(word);
+        if (!std::filesystem::is_regular_file(word, ec)) continue;
+        const std::vector<char> bytes = read_file(word);
+        key.add_array(std::span<const char>(bytes));
+    }
+    return "frames of a film that was not finished: " + fmt::format("{:016x}{:016x}\n", key.high(), key.low());
 }
 
 void print_result(const Film& a, const pictures::FilmLength& length) {
@@ -60,10 +75,12 @@ int run(const Film& a) {
     std::vector<stroke::JournalEntry> entries = replay_strokes(a.replay, *project, painting).followed;
     const pictures::FilmOptions options = film_options(a, model, console);
     const pictures::FilmLength length = pictures::measure_film(entries, options);
-    io::write_film(
-        a.output,
-        {.width = a.replay.view.width, .height = a.replay.view.height, .frames_per_second = a.frames_per_second},
-        [&](io::FilmSink& sink) { pictures::film_journal(painting, std::move(entries), options, sink); });
+    io::write_film(a.output,
+                   {.width = a.replay.view.width,
+                    .height = a.replay.view.height,
+                    .frames_per_second = a.frames_per_second,
+                    .content = content_of(a)},
+                   [&](io::FilmSink& sink) { pictures::film_journal(painting, std::move(entries), options, sink); });
     console.clear();
     print_result(a, length);
     return 0;

@@ -48,30 +48,65 @@ fs::path frame_path(const fs::path& folder, int number) {
     return folder / fmt::format("frame-{:05}.png", number);
 }
 
-/// Frames in a folder; they are removed where this is left before `finish`.
+/// Holds the content of a film while its frames are written.
+fs::path unfinished_path(const fs::path& folder) {
+    return folder / "unfinished-film.txt";
+}
+
+/// Frames in a folder; they are removed where this is left before `finish` or `keep`.
 class FrameFolder : public FilmSink {
   public:
-    explicit FrameFolder(fs::path folder) : folder_(std::move(folder)) {
+    FrameFolder(fs::path folder, const std::string& content) : folder_(std::move(folder)) {
         std::error_code ec;
         made_ = fs::create_directory(folder_, ec);
         if (!fs::is_directory(folder_, ec)) throw Error(folder_.string(), "cannot be made");
+        const fs::path unfinished = unfinished_path(folder_);
+        if (fs::exists(unfinished, ec)) {
+            const std::vector<char> former = read_file(unfinished, kMostContent);
+            if (content.empty() || std::string_view(former.data(), former.size()) != content)
+                throw Error(folder_.string(), "has frames of another film, which was stopped; name another folder");
+            while (fs::exists(frame_path(folder_, there_ + 1), ec)) ++there_;
+            for (const auto& entry : fs::directory_iterator(folder_, ec))  // of the frame that was being written
+                if (entry.path().filename().string().starts_with(".frame-")) fs::remove(entry.path(), ec);
+        } else if (!content.empty()) {
+            try {
+                write_file(unfinished, content.data(), content.size());
+            } catch (...) {
+                remove();
+                throw;
+            }
+        }
     }
     ~FrameFolder() override {
-        std::error_code ec;
-        if (finished_) return;
-        for (int k = 1; k <= count_; ++k) fs::remove(frame_path(folder_, k), ec);
-        if (made_) fs::remove(folder_, ec);
+        if (!kept_) remove();
     }
     FrameFolder(const FrameFolder&) = delete;
     FrameFolder& operator=(const FrameFolder&) = delete;
 
+    bool has_next() const override { return count_ < there_; }
+    void pass() override { ++count_; }
     void add(const PixelView& frame) override { write_image(frame_path(folder_, ++count_), frame); }
-    void finish() { finished_ = true; }
+    /// What is there stays, and is continued by the next film of this content.
+    void keep() { kept_ = std::max(count_, there_) > 0; }
+    void finish() {
+        std::error_code ec;
+        fs::remove(unfinished_path(folder_), ec);
+        kept_ = true;
+    }
 
   private:
+    static constexpr std::size_t kMostContent = std::size_t{1} << 20;  // bytes
+
+    void remove() noexcept {
+        std::error_code ec;
+        for (int k = 1; k <= std::max(count_, there_); ++k) fs::remove(frame_path(folder_, k), ec);
+        fs::remove(unfinished_path(folder_), ec);
+        if (made_) fs::remove(folder_, ec);
+    }
+
     fs::path folder_;
-    int count_ = 0;
-    bool made_ = false, finished_ = false;
+    int count_ = 0, there_ = 0;  ///< given so far; in the folder from before
+    bool made_ = false, kept_ = false;
 };
 
 std::vector<std::string> ffmpeg_arguments(const fs::path& program, const fs::path& output, const FilmFormat& format) {
@@ -232,7 +267,7 @@ bool is_film_file(const fs::path& path) {
 void check_film(const fs::path& path) {
     std::error_code ec;
     if (!is_film_file(path)) {
-        if (fs::exists(frame_path(path, 1), ec))
+        if (fs::exists(frame_path(path, 1), ec) && !fs::exists(unfinished_path(path), ec))
             throw Error(path.string(), "has the frames of a film already (frame-00001.png)");
         return;
     }
@@ -242,8 +277,13 @@ void check_film(const fs::path& path) {
 
 void write_film(const fs::path& path, const FilmFormat& format, const std::function<void(FilmSink& sink)>& draw) {
     if (!is_film_file(path)) {
-        FrameFolder folder(path);
-        draw(folder);
+        FrameFolder folder(path, format.content);
+        try {
+            draw(folder);
+        } catch (const Cancelled&) {
+            if (!format.content.empty()) folder.keep();
+            throw;
+        }
         return folder.finish();
     }
     write_atomically(path, [&](const fs::path& temporary) {
