@@ -32,6 +32,11 @@ class OwnBrush : public testing::Test {
         std::ofstream(file_) << brush::preset_toml(preset);
         fs::last_write_time(file_, start_ + std::chrono::seconds(++written_));
     }
+    void look() {
+        shelf_.look();
+        shelf_.wait();
+        shelf_.poll();
+    }
     double length() { return shelf_.at(file_).preset.length; }
 
     fs::path folder_;
@@ -46,36 +51,63 @@ constexpr double kExact = 1e-9;  // metres: TOML states so many digits
 TEST_F(OwnBrush, IsReadAgainOnlyWhenItsFileChanges) {
     EXPECT_NEAR(length(), 0.02, kExact);
     const std::uint64_t first = shelf_.at(file_).reading;
-    shelf_.look();
+    look();
     EXPECT_EQ(shelf_.at(file_).reading, first);
     write(0.03);
-    EXPECT_NEAR(length(), 0.02, kExact) << "until one looks";
     shelf_.look();
+    shelf_.wait();
+    EXPECT_NEAR(length(), 0.02, kExact) << "until the window takes what was read";
+    shelf_.poll();
+    EXPECT_FALSE(shelf_.busy());
     EXPECT_NEAR(length(), 0.03, kExact);
     EXPECT_NE(shelf_.at(file_).reading, first);
 }
 
-TEST_F(OwnBrush, ThatIsAwayLooksAsItDidAndIsBackWithItsFile) {
+TEST_F(OwnBrush, ThatIsMissingLooksAsItDidAndIsBackWithItsFile) {
     EXPECT_TRUE(shelf_.at(file_).fault.empty());
     fs::rename(file_, file_ + ".away");
-    shelf_.look();
+    look();
     EXPECT_NE(shelf_.at(file_).fault.text().find(file_), std::string::npos);
     EXPECT_FALSE(shelf_.at(file_).written);
     EXPECT_NEAR(length(), 0.02, kExact);
     fs::rename(file_ + ".away", file_);
-    shelf_.look();
+    look();
     EXPECT_TRUE(shelf_.at(file_).fault.empty()) << shelf_.at(file_).fault.text();
 }
 
 TEST_F(OwnBrush, ThatIsDamagedSaysWhereAndWhenItIsMendedItIsWhole) {
     std::ofstream(file_) << "[shape]\nlength_mm = long\n";
     fs::last_write_time(file_, start_ + std::chrono::seconds(100));
-    EXPECT_NE(shelf_.at(file_).fault.text().find("2"), std::string::npos) << shelf_.at(file_).fault.text();
+    EXPECT_NE(shelf_.at(file_).fault.text().find(file_ + ":2"), std::string::npos) << shelf_.at(file_).fault.text();
     EXPECT_TRUE(shelf_.at(file_).written);
     write(0.025);
-    shelf_.look();
+    look();
     EXPECT_TRUE(shelf_.at(file_).fault.empty());
     EXPECT_NEAR(length(), 0.025, kExact);
+}
+
+// What a look found is older than what was read after it had begun.
+TEST_F(OwnBrush, ThatIsReadDuringALookStaysAsItIs) {
+    shelf_.at(file_);
+    write(0.03);
+    shelf_.look();
+    shelf_.wait();
+    write(0.04);
+    shelf_.read(file_);
+    shelf_.poll();
+    EXPECT_NEAR(length(), 0.04, kExact);
+}
+
+TEST_F(OwnBrush, ThatIsOffTheListAndOutOfTheHandIsLetGo) {
+    const std::string other = (folder_ / "other.toml").string();
+    fs::copy_file(file_, other);
+    for (const bool in_hand : {false, true}) {
+        BrushShelf shelf;
+        const std::uint64_t read = shelf.at(file_).reading, listed = shelf.at(other).reading;
+        shelf.watch({other}, in_hand ? file_ : "wolf-small");
+        EXPECT_EQ(shelf.at(other).reading, listed);
+        EXPECT_EQ(shelf.at(file_).reading == read, in_hand) << "it is read again when it is asked for";
+    }
 }
 
 TEST_F(OwnBrush, HangsInAFamilyThatIsMadeAnewOnlyWhereSomethingChanged) {
@@ -89,8 +121,8 @@ TEST_F(OwnBrush, HangsInAFamilyThatIsMadeAnewOnlyWhereSomethingChanged) {
     EXPECT_EQ(shelf_.families(names).data(), there);
     EXPECT_EQ(shelf_.families({names[0]}).size(), 1u);
     fs::remove(file_);
-    shelf_.look();
-    EXPECT_EQ(shelf_.families(names).back().names, std::vector<std::string>{file_}) << "away, in its place";
+    look();
+    EXPECT_EQ(shelf_.families(names).back().names, std::vector<std::string>{file_}) << "missing, in its place";
 }
 
 }  // namespace

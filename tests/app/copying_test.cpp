@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "copied_picture.h"
+#include "core/error.h"
 #include "core/files/files.h"
 #include "writer/glyphs/glyph_source.h"
 
@@ -192,7 +193,7 @@ TEST_F(Copying, IsKeptInAProjectWithItsPicture) {
     request_.text = "\xe5\x8d\x81";
     click(CopyEdit::reverse, horizontal_);
     click(CopyEdit::split, vertical_);
-    const KeptCopy kept = copy_to_keep(request_);
+    const KeptCopy kept = read_copy(request_);
     const KeptCopy back = kept_copy(to_attachment(kept));
     EXPECT_TRUE(back.says_the_same(kept));
     EXPECT_EQ(back.correction.cuts.size(), 1u);
@@ -208,7 +209,7 @@ TEST_F(Copying, IsKeptInAProjectWithItsPicture) {
 
 TEST_F(Copying, APictureThatIsAwayIsPutIntoTheStateFolderUnderItsName) {
     setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 1);
-    KeptCopy kept = copy_to_keep(request_);
+    KeptCopy kept = read_copy(request_);
     std::filesystem::remove(request_.like);
     const std::filesystem::path there = picture_of(kept);
     EXPECT_EQ(there.filename(), "cross.png");
@@ -224,46 +225,69 @@ TEST_F(Copying, APictureThatIsAwayIsPutIntoTheStateFolderUnderItsName) {
         EXPECT_NE(*inside.begin(), "..") << hostile;
         EXPECT_EQ(inside.filename(), "picture.png") << hostile;
     }
+    // A file in place of the folder.
+    std::filesystem::create_directories(folder_ / "full" / "tuft");
+    std::filesystem::copy_file(there, folder_ / "full" / "tuft" / "copied");
+    setenv("XDG_STATE_HOME", (folder_ / "full").c_str(), 1);
+    EXPECT_THROW(picture_of(kept), Error);
+    setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 1);
 }
 
-/// What was read to be kept.
-std::vector<CopyKeeper::Read> all_of(CopyKeeper& keeper) {
-    std::vector<CopyKeeper::Read> all;
-    while (keeper.busy()) {
-        keeper.wait();
-        if (auto read = keeper.poll()) all.push_back(std::move(*read));
+/// What it reads until it has nothing to do.
+std::vector<CopyReader::Read> all_of(CopyReader& reader) {
+    std::vector<CopyReader::Read> all;
+    while (reader.busy()) {
+        reader.wait();
+        if (auto read = reader.poll()) all.push_back(std::move(*read));
     }
     return all;
 }
 
 TEST_F(Copying, IsReadToBeKeptOnceForEachCorrectionAndStateOfItsFile) {
-    CopyKeeper keeper;
+    CopyReader reader;
     std::vector<KeptCopy> kept;
-    const auto keep = [&] {
-        keeper.keep(request_, kept);
-        std::vector<CopyKeeper::Read> all = all_of(keeper);
-        for (CopyKeeper::Read& read : all) kept = {std::move(*read.copy)};
+    const auto reads = [&] {
+        reader.read(request_, kept);
+        std::vector<CopyReader::Read> all = all_of(reader);
+        for (CopyReader::Read& read : all) kept = {std::move(*read.copy)};
         return all.size();
     };
-    EXPECT_EQ(keep(), 1u);
-    EXPECT_EQ(keep(), 0u);
+    EXPECT_EQ(reads(), 1u);
+    EXPECT_EQ(reads(), 0u);
     click(CopyEdit::reverse, horizontal_);
-    EXPECT_EQ(keep(), 1u);
+    EXPECT_EQ(reads(), 1u);
     EXPECT_EQ(kept.front().correction, request_.correction);
     std::filesystem::last_write_time(request_.like, *kept.front().read_at + std::chrono::seconds(1));
-    EXPECT_EQ(keep(), 1u);
-    EXPECT_EQ(keep(), 0u);
+    EXPECT_EQ(reads(), 1u);
+    EXPECT_EQ(reads(), 0u);
 }
 
-TEST_F(Copying, RequestsThatComeWhileOneIsReadAreReadAfterItAndAFaultIsTold) {
-    CopyKeeper keeper;
+TEST_F(Copying, TheSameRequestWhileItIsReadIsReadOnceUnlessAnotherOneCameBetween) {
+    CopyReader reader;
+    reader.read(request_, {});
+    reader.read(request_, {});
+    EXPECT_EQ(all_of(reader).size(), 1u);
+    // The last of several corrections is the one that stays, also where it is the one that is kept.
+    const std::vector<KeptCopy> kept{read_copy(request_)};
+    const writer::CopyCorrection before = request_.correction;
+    click(CopyEdit::reverse, horizontal_);
+    reader.read(request_, kept);
+    request_.correction = before;
+    reader.read(request_, kept);
+    const std::vector<CopyReader::Read> all = all_of(reader);
+    ASSERT_EQ(all.size(), 2u);
+    EXPECT_EQ(all[1].copy->correction, before);
+}
+
+TEST_F(Copying, RequestsThatComeWhileOneIsReadAreReadAfterItAndAFaultIsReported) {
+    CopyReader reader;
     for (const char* name : {"a", "b", "c"}) {
         request_.text = name;
-        keeper.keep(request_, {});
+        reader.read(request_, {});
     }
     request_.like = folder_ / "away.png";
-    keeper.keep(request_, {});
-    const std::vector<CopyKeeper::Read> all = all_of(keeper);
+    reader.read(request_, {});
+    const std::vector<CopyReader::Read> all = all_of(reader);
     ASSERT_EQ(all.size(), 4u);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(all[i].copy->name, std::string(1, static_cast<char>('a' + i)));
     EXPECT_FALSE(all[3].copy);

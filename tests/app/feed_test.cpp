@@ -69,7 +69,7 @@ TEST(ScriptParse, ReadsPlacesQuotesAndComments) {
 
 TEST(ScriptParse, NamesTheLineOfAMistake) {
     EXPECT_EQ(error_of("undo\nscrenshot a.png\n"), ":2: unknown command 'screnshot', did you mean 'screenshot'?");
-    EXPECT_EQ(error_of("move here\n"), ":1: 'here' is not a place; write X,Y or X%,Y%");
+    EXPECT_EQ(error_of("move here,there\n"), ":1: 'here,there' is not a place; write X,Y or X%,Y%");
     EXPECT_EQ(error_of("click \"Open\n"), ":1: a quote is not closed");
     EXPECT_EQ(error_of("wait\n"), ":1: 'wait' needs 1 word(s) after it");
 }

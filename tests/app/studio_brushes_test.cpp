@@ -49,81 +49,59 @@ TEST_F(StudioBrushes, ACardTakesTheBrushThatPaintsNext) {
     EXPECT_EQ(stroke::brush_of(io::Project::open(path("work.tuft")).strokes().front()), "goat-large");
 }
 
-TEST_F(StudioBrushes, AFileOfOnesOwnIsOneOfThemAndIsThereAtTheNextStart) {
-    const std::vector<char> toml = read_file(source_folder() + "/models/brushes/wolf-small.toml");
-    write_file(path("house-painter.toml"), toml.data(), toml.size());
-    const std::string file = path("house-painter.toml");
-    const Ran first = studio(kBowl + "open " + file + "\nwait 0.3\nexpect label " + file +
-                                 "\nstroke 46%,58% 50%,61%\nwait-ready\nexpect strokes 1\nsave work.tuft\nwait-ready\n",
-                             kWindow);
-    ASSERT_EQ(first.status, 0) << first.err;
-    EXPECT_EQ(stroke::brush_of(io::Project::open(path("work.tuft")).strokes().front()), file);
-    const Ran second = studio("open " + path("work.tuft") + "\nwait-ready\nexpect strokes 1\nexpect label " + file +
-                                  "\nclick \"All brushes\"\nclick \"Brush filter\"\ntype painter\nwait 0.3\nexpect "
-                                  "label \"card " +
-                                  file + "\"\n",
-                              kWindow);
-    EXPECT_EQ(second.status, 0) << second.err;
-}
-
-// A disk that is not plugged in.
-TEST_F(StudioBrushes, AFileThatIsAwayKeepsItsPlaceSaysSoAndWorksAgainWhenItIsBack) {
-    const std::vector<char> toml = read_file(source_folder() + "/models/brushes/wolf-small.toml");
-    const std::string file = path("house-painter.toml");
-    write_file(file, toml.data(), toml.size());
-    // The brush in the hand when the model is left is the one that it is opened with.
-    const Ran first = studio(kBowl + "open " + file + "\nwait 0.3\nsave work.tuft\nwait-ready\n", kWindow);
-    ASSERT_EQ(first.status, 0) << first.err;
-    const std::string again = "open " + path("work.tuft") + "\nwait-ready\n",
-                      browse = "click \"All brushes\"\nclick \"Brush filter\"\ntype painter\nwait 0.3\n",
-                      painted = "stroke 46%,58% 50%,61%\nwait-ready\n";
-    fs::rename(file, file + ".away");
-    const Ran away =
-        studio(again + "expect label " + file + "\nexpect message away\n" + painted + browse + "expect label \"away " +
-                   file + "\"\nclick \"card " + file + "\"\nexpect message away\nclick \"All brushes\"\nwait 0.2\n" +
-                   painted + "expect strokes 2\nsave work.tuft\nwait-ready\n",
-               kWindow);
-    ASSERT_EQ(away.status, 0) << away.err;
-    for (const stroke::JournalEntry& entry : io::Project::open(path("work.tuft")).strokes())
-        EXPECT_NE(stroke::brush_of(entry), file) << "another one is in the hand";
-    fs::rename(file + ".away", file);
-    const Ran back = studio(again + painted + browse + "places\nsave work.tuft\nwait-ready\n", kWindow);
-    ASSERT_EQ(back.status, 0) << back.err;
-    EXPECT_TRUE(shows(back.out, "card " + file));
-    EXPECT_FALSE(shows(back.out, "away " + file));
-    EXPECT_EQ(stroke::brush_of(io::Project::open(path("work.tuft")).strokes().back()), file) << "in the hand again";
-}
-
-TEST_F(StudioBrushes, AFileOfOnesOwnIsTakenOffTheList) {
-    const std::string file = path("house-painter.toml");
-    const std::vector<char> toml = read_file(source_folder() + "/models/brushes/wolf-small.toml");
-    write_file(file, toml.data(), toml.size());
-    const Ran first = studio(kBowl + "open " + file + "\nwait 0.3\nclick goat-small\nclick \"All brushes\"\n" +
-                                 "click \"Brush filter\"\ntype painter\nwait 0.3\nclick \"forget " + file +
-                                 "\"\nwait 0.2\nplaces\n" + "wait 0.1\n",
-                             kWindow);
-    ASSERT_EQ(first.status, 0) << first.err;
-    EXPECT_FALSE(shows(first.out, file));
-    EXPECT_TRUE(fs::exists(file));
-    const Ran second = studio(kBowl + "wait 0.2\nplaces\n", kWindow);
-    EXPECT_FALSE(shows(second.out, file));
-}
-
-// A fault is told of what the file is.
-TEST_F(StudioBrushes, ADamagedBrushIsNoBadInkNorADamagedInkABadBrush) {
-    const auto damaged = [&](const std::string& name, const std::string& shipped, const std::string& line,
-                             const std::string& by) {
+// A disk that is not plugged in, and is again. A damaged file's error names its kind: brush or ink.
+TEST_F(StudioBrushes, AFileOfOnesOwnIsThereAtEachStartAlsoWhileItIsMissingUntilItIsTakenOffTheList) {
+    const auto copied = [&](const std::string& name, const std::string& shipped, const std::string& line,
+                            const std::string& by) {
         std::string text = read(source_folder() + "/models/" + shipped);
         text.replace(text.find(line), line.size(), by);
         write_file(path(name), text.data(), text.size());
         return path(name);
     };
-    const std::string brush = damaged("brush.toml", "brushes/wolf-small.toml", "length_mm = 20", "length_mm = -1"),
-                      ink = damaged("ink.toml", "inks/carbon.toml", "fraction = 1.0", "fraction = 3.0");
-    const Ran ran = studio(kBowl + "open " + brush + "\nwait 0.2\nexpect message length_mm\nopen " + ink +
-                               "\nwait 0.2\nexpect message fraction\n",
-                           kWindow);
-    EXPECT_EQ(ran.status, 0) << ran.err;
+    const std::string file = copied("house-painter.toml", "brushes/wolf-small.toml", "", ""),
+                      brush = copied("brush.toml", "brushes/wolf-small.toml", "length_mm = 20", "length_mm = -1"),
+                      ink = copied("ink.toml", "inks/carbon.toml", "fraction = 1.0", "fraction = 3.0");
+    const std::string again = "open " + path("work.tuft") + "\nwait-ready\n",
+                      browse = "click \"All brushes\"\nclick \"Brush filter\"\ntype painter\nwait 0.3\n",
+                      painted = "stroke 46%,58% 50%,61%\nwait-ready\n", saved = "save work.tuft\nwait-ready\n";
+    const auto brush_of = [&](std::size_t stroke) {
+        return stroke::brush_of(io::Project::open(path("work.tuft")).strokes().at(stroke));
+    };
+    // The brush in the hand when the model is left is the one that it is opened with.
+    const Ran first = studio(kBowl + "open " + file + "\nwait 0.3\nexpect label " + file + "\n" + painted + "open " +
+                                 brush + "\nwait 0.2\nexpect message length_mm\nopen " + ink +
+                                 "\nwait 0.2\nexpect message fraction\nexpect strokes 1\n" + saved,
+                             kWindow);
+    ASSERT_EQ(first.status, 0) << first.err;
+    EXPECT_EQ(brush_of(0), file);
+
+    fs::rename(file, file + ".away");
+    const Ran away = studio(again + "expect label " + file + "\nexpect message missing\n" + painted + browse +
+                                "expect label \"missing " + file + "\"\nclick \"card " + file +
+                                "\"\nexpect message missing\nclick \"All brushes\"\nwait 0.2\n" + painted +
+                                "expect strokes 3\n" + saved,
+                            kWindow);
+    ASSERT_EQ(away.status, 0) << away.err;
+    for (const std::size_t stroke : {1, 2}) EXPECT_NE(brush_of(stroke), file) << "another one is in the hand";
+
+    fs::rename(file + ".away", file);
+    const Ran back = studio(again + painted + browse + "places\nreport\n" + saved +
+                                "click goat-small\nclick \"forget " + file + "\"\nwait 0.2\nplaces\nreport\n",
+                            kWindow);
+    ASSERT_EQ(back.status, 0) << back.err;
+    EXPECT_EQ(brush_of(3), file) << "in the hand again";
+    const auto turns = places_in_turn(back.out);
+    ASSERT_EQ(turns.size(), 2u);
+    EXPECT_TRUE(turns[0].contains("card " + file));
+    EXPECT_FALSE(turns[0].contains("missing " + file));
+    EXPECT_TRUE(turns[1].contains("goat-small"));
+    EXPECT_FALSE(turns[1].contains(file));
+    EXPECT_TRUE(fs::exists(file));
+
+    const Ran last = studio(kBowl + "wait 0.2\nplaces\n", kWindow);
+    ASSERT_EQ(last.status, 0) << last.err;
+    EXPECT_TRUE(shows(last.out, "goat-small"));
+    EXPECT_FALSE(shows(last.out, file));
 }
 
 }  // namespace

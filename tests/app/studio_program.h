@@ -11,6 +11,7 @@
 #include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "paths.h"
 #include "projects.h"
@@ -75,6 +76,22 @@ class StudioProgram : public testing::Test {
             if (in >> x >> y && std::getline(in >> std::ws, name)) found[name] = {x, y};
         }
         return found;
+    }
+
+    // The same for each `places` that is followed by `report`.
+    static std::vector<std::map<std::string, std::pair<double, double>>> places_in_turn(const std::string& out) {
+        std::vector<std::map<std::string, std::pair<double, double>>> all;
+        std::istringstream lines(out);
+        std::string part;
+        for (std::string line; std::getline(lines, line);) {
+            if (!line.starts_with('{')) {
+                part += line + "\n";
+                continue;
+            }
+            all.push_back(places(part));
+            part.clear();
+        }
+        return all;
     }
 
     fs::path folder_;

@@ -23,6 +23,7 @@
 #include "app/panels/panels.h"
 #include "app/text/texts.h"
 #include "app/widgets/manual_text.h"
+#include "app/widgets/titles.h"
 #include "brush/preset/preset.h"
 #include "core/error.h"
 #include "core/files/files.h"

@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/files/files.h"
+#include "core/files/modified_time.h"
 #include "core/geometry/sparse_numbering.h"
 #include "core/geometry/types.h"
 #include "core/hash.h"
@@ -129,6 +130,7 @@ TEST_F(Files, FailedWriteLeavesTheOldFileAndNothingBeside) {
 
 TEST_F(Files, MissingEmptyAndFolderAreErrors) {
     EXPECT_THROW(read_file(folder_ / "missing"), Error);
+    EXPECT_FALSE(modified_time(folder_ / "missing"));
     EXPECT_THROW(read_file(folder_), Error);
     std::ofstream(folder_ / "empty");
     EXPECT_THROW(read_file(folder_ / "empty"), Error);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/dialogs/dialogs.h"
+#include "app/widgets/titles.h"
 #include "core/text/units.h"
 
 namespace tuft::app {

@@ -11,6 +11,8 @@
 #include "app/document/writing.h"
 #include "core/error.h"
 #include "core/files/files.h"
+#include "core/files/modified_time.h"
+#include "core/files/system_message.h"
 #include "core/hash.h"
 
 namespace fs = std::filesystem;
@@ -32,12 +34,6 @@ void begin_step(const CopyToEdit& c) {
 
 std::string id_of(const std::vector<char>& bytes) {
     return fmt::format("{:016x}", hash_bytes(bytes.data(), bytes.size()));
-}
-
-std::optional<fs::file_time_type> time_of(const fs::path& file) {
-    std::error_code ec;
-    const fs::file_time_type time = fs::last_write_time(file, ec);
-    return ec ? std::nullopt : std::optional(time);
 }
 
 /// The name of a picture's file in a folder; of a hostile path that is none, one of our own.
@@ -164,35 +160,36 @@ KeptCopy kept_copy(const io::Attachment& attachment) {
     return copy;
 }
 
-KeptCopy copy_to_keep(const writer::TextRequest& request) {
+KeptCopy read_copy(const writer::TextRequest& request) {
     KeptCopy copy{.id = {},
                   .file = fs::absolute(request.like),
                   .bytes = {},
                   .name = request.text,
                   .correction = request.correction,
-                  .read_at = time_of(request.like)};
+                  .read_at = modified_time(request.like)};
     copy.bytes = read_file(request.like, kMostPictureBytes);
     copy.id = id_of(copy.bytes);
     return copy;
 }
 
-void CopyKeeper::keep(const writer::TextRequest& request, std::span<const KeptCopy> kept) {
+void CopyReader::read(const writer::TextRequest& request, std::span<const KeptCopy> kept) {
     const fs::path file = fs::absolute(request.like);
-    const auto time = time_of(file);
-    const bool there =
-        time && std::any_of(kept.begin(), kept.end(), [&](const KeptCopy& k) {
-            return k.file == file && k.read_at == time && k.name == request.text && k.correction == request.correction;
-        });
-    if (there || (!wanted_.empty() && wanted_.back() == request)) return;
-    wanted_.push_back(request);
+    Wish wish{request, modified_time(file)};
+    const auto is_kept = [&](const KeptCopy& k) {
+        return k.file == file && k.read_at == wish.time && k.name == request.text && k.correction == request.correction;
+    };
+    // What is being read takes the place of what is kept.
+    if (busy() ? wish == asked_ : wish.time && std::any_of(kept.begin(), kept.end(), is_kept)) return;
+    asked_ = wish;
+    wanted_.push_back(std::move(wish));
     if (!busy()) begin();
 }
 
-void CopyKeeper::begin() {
-    reading_ = std::async(std::launch::async, [request = std::move(wanted_.front())] {
+void CopyReader::begin() {
+    reading_ = std::async(std::launch::async, [request = std::move(wanted_.front().request)] {
         Read read;
         try {
-            read.copy = copy_to_keep(request);
+            read.copy = read_copy(request);
             read.attachment = to_attachment(*read.copy);
         } catch (const std::exception& error) {
             read.copy.reset();
@@ -203,14 +200,14 @@ void CopyKeeper::begin() {
     wanted_.pop_front();
 }
 
-std::optional<CopyKeeper::Read> CopyKeeper::poll() {
+std::optional<CopyReader::Read> CopyReader::poll() {
     if (!busy() || reading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return std::nullopt;
     Read read = reading_.get();
     if (!wanted_.empty()) begin();
     return read;
 }
 
-void CopyKeeper::wait() const {
+void CopyReader::wait() const {
     if (busy()) reading_.wait();
 }
 
@@ -218,10 +215,12 @@ fs::path picture_of(const KeptCopy& copy) {
     try {
         if (!copy.file.empty() && read_file(copy.file, kMostPictureBytes) == copy.bytes) return copy.file;
     } catch (const Error&) {
-        // It is away.
+        // It is missing.
     }
     const fs::path folder = state_folder() / "copied" / id_of(copy.bytes);
-    fs::create_directories(folder);
+    std::error_code ec;
+    fs::create_directories(folder, ec);
+    if (ec) throw Error(folder.string(), Message("the folder cannot be made: {}", system_message(ec)));
     const fs::path file = folder / file_name_of(copy);
     write_file(file, copy.bytes.data(), copy.bytes.size());
     return file;

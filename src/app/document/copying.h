@@ -94,30 +94,37 @@ KeptCopy kept_copy(const io::Attachment& attachment);
 
 /// Returns the copy of a request, to be kept. Throws `Error` where the picture's file cannot be read or is larger than
 /// 24 MB. Cost: reads the file.
-KeptCopy copy_to_keep(const writer::TextRequest& request);
+KeptCopy read_copy(const writer::TextRequest& request);
 /// Returns a file with the picture: where it was, if the same bytes are there, else one of the same name in the state
 /// folder that is written now. Throws `Error` where it cannot be written.
 std::filesystem::path picture_of(const KeptCopy& copy);
 
 /// Reads pictures that a project is to keep, on a thread of its own. Window thread.
-class CopyKeeper {
+class CopyReader {
   public:
     struct Read {
         std::optional<KeptCopy> copy;
         io::Attachment attachment;  ///< of it
         Message fault;              ///< why there is none
     };
-    /// Reads the copy of a request, except where `kept` has it as its file is now.
-    void keep(const writer::TextRequest& request, std::span<const KeptCopy> kept);
+    /// Reads the copy of a request, except where the last one asked for is the same and is being read, or nothing is
+    /// read and `kept` has it; in both cases as its file is now.
+    void read(const writer::TextRequest& request, std::span<const KeptCopy> kept);
     /// Returns what was read, once each; nothing where there is none yet.
     std::optional<Read> poll();
     void wait() const;
     bool busy() const { return reading_.valid(); }
 
   private:
+    struct Wish {
+        writer::TextRequest request;
+        std::optional<std::filesystem::file_time_type> time;  ///< of the picture's file when it was asked for
+        bool operator==(const Wish&) const = default;
+    };
     void begin();
 
-    std::deque<writer::TextRequest> wanted_;
+    std::deque<Wish> wanted_;
+    Wish asked_;  ///< the last one
     std::future<Read> reading_;
 };
 

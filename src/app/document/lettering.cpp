@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/files/modified_time.h"
 #include "core/text/units.h"
 #include "stroke/drawing/drawing.h"
 
@@ -128,11 +129,11 @@ LetteringReader::Read LetteringReader::read(const writer::TextRequest& request) 
     Read out;
     try {
         if (request.text.empty() && request.like.empty()) return out;
+        // Before it is read: what is written meanwhile is shown after the next read.
+        const auto time = modified_time(request.like);
         writer::Text text = reader_.read(request);
         if (!text.blank()) out.text = std::move(text);
         out.copy = reader_.copied();
-        std::error_code ec;
-        const auto time = std::filesystem::last_write_time(request.like, ec);
         if (out.copy && (request.like != shown_ || time != shown_time_))
             out.picture = small_picture(reader_.picture(), kMostAcross);
         shown_ = out.copy ? request.like : "", shown_time_ = time;

@@ -79,7 +79,7 @@ class LetteringReader {
     writer::TextRequest asked_;    // of the last reading
     writer::TextReader reader_;    // used by one thread at a time
     std::filesystem::path shown_;  // picture that was given last; likewise
-    std::filesystem::file_time_type shown_time_;
+    std::optional<std::filesystem::file_time_type> shown_time_;
     std::future<Read> reading_;
 };
 

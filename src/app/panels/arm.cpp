@@ -287,7 +287,7 @@ void space_section(Session& s) {
 void arm_panel(Session& s) {
     if (!s.arm.shown || !s.paint_thread) return;
     Ui& ui = s.ui;
-    begin_panel_over(ui, s.view.area, {.name = "arm", .across = 1, .width = kArmWidth});
+    begin_panel_over(ui, s.view.area, {.name = "arm", .across = 1, .width = ui.px(kArmWidth)});
     ui.heading("Force-feedback arm");
     state_line(s);
     if (!s.arm.arm) choose_device(s);

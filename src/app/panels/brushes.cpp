@@ -290,27 +290,28 @@ bool forget_button(Ui& ui, const std::string& name, ImVec2 corner) {
 void brush_card(Session& s, const std::string& name, float width) {
     Ui& ui = s.ui;
     const ShelfBrush& there = s.brush.shelf.at(name);
-    const bool own = is_own_brush(name), away = !there.fault.empty();
+    const bool own = is_own_brush(name), faulty = !there.fault.empty();
     const float height = ui.px(kCardHeight), pad = ui.px(4), icon = ui.px(kCardIcon);
     const ImVec2 at = ImGui::GetCursorScreenPos(), end(at.x + width, at.y + height);
     if (ImGui::InvisibleButton(("card " + name).c_str(), ImVec2(width, height))) choose(s, name);
     if (own) ImGui::SetItemAllowOverlap();
     ui.mark("card " + name);
     if (draw_choice(ui, at, end, is_chosen(s.brush, name)) && !ui.modal)
-        ImGui::SetTooltip("%s", away ? ui.sentence(there.fault).c_str() : size_text(ui, there.preset).c_str());
+        ImGui::SetTooltip("%s", faulty ? ui.sentence(there.fault).c_str() : size_text(ui, there.preset).c_str());
     draw_hanging(s, name, ImVec2(at.x + pad, at.y + pad), icon, height - 2 * pad);
     const float x = at.x + icon + 2 * pad, letters = 0.8f * ImGui::GetFontSize(), room = width - icon - 3 * pad;
     ImDrawList* draw = ImGui::GetWindowDrawList();
     draw->PushClipRect(at, end, true);
-    draw->AddText(ImVec2(x, at.y + ui.px(1)), away ? ui.faint : ui.strong,
+    draw->AddText(ImVec2(x, at.y + ui.px(1)), faulty ? ui.faint : ui.strong,
                   ui.fitted(ui.title(name), own ? room - ui.px(16) : room).c_str());
     const float stroke = std::min(room, (height - ImGui::GetTextLineHeight() - letters - ui.px(5)) * kAspect);
-    if (!away) draw_tried(ui, s.brush, name, ImVec2(x, at.y + ImGui::GetTextLineHeight() + ui.px(2)), stroke);
+    if (!faulty) draw_tried(ui, s.brush, name, ImVec2(x, at.y + ImGui::GetTextLineHeight() + ui.px(2)), stroke);
     const ImVec2 last(x, end.y - letters - ui.px(3));
-    if (away) {
-        const bool gone = !there.written;
-        draw->AddText(ImGui::GetFont(), letters, last, ui.wrong, ui.tr(gone ? "The file is away" : "Cannot be read"));
-        ui.mark_at((gone ? "away " : "damaged ") + name, last.x, last.y);
+    if (faulty) {
+        const bool gone = own && !there.written;
+        draw->AddText(ImGui::GetFont(), letters, last, ui.wrong,
+                      ui.tr(gone ? "The file is missing" : "Cannot be read"));
+        ui.mark_at((gone ? "missing " : "damaged ") + name, last.x, last.y);
     } else {
         draw->AddText(ImGui::GetFont(), letters, last, ui.faint, card_size(there.preset).c_str());
     }
@@ -369,7 +370,7 @@ void brush_browser(Session& s) {
     Ui& ui = s.ui;
     if (begin_panel_over(ui, s.view.area,
                          {.name = "Brushes",
-                          .width = kBrowserWidth,
+                          .width = ui.px(kBrowserWidth),
                           .height = static_cast<float>(s.view.area.height),
                           .has_bar = true,
                           .moves = true,

@@ -222,7 +222,7 @@ void colour_panel(Session& s) {
     Ui& ui = s.ui;
     begin_panel_over(
         ui, s.view.area,
-        {.name = "colour", .across = s.preferences.ui.left_handed ? 1.0f : 0, .width = kWidth, .moves = true});
+        {.name = "colour", .across = s.preferences.ui.left_handed ? 1.0f : 0, .width = ui.px(kWidth), .moves = true});
     if (!c.match && !c.finder.busy()) wish(s, false);
     wheel(s);
     hex_field(s);

@@ -216,9 +216,8 @@ void copied_strokes_panel(Session& s) {
     const float room = static_cast<float>(s.view.area.height) - 2 * ui.px(kPanelMargin);
     const float side = std::clamp(room - ui.px(kRest), ui.px(kLeastSide), ui.px(kSide));
     const float width = std::max(side, ui.px(250)) + 2 * ImGui::GetStyle().WindowPadding.x;
-    begin_panel_over(
-        ui, s.view.area,
-        {.name = "Copied strokes", .across = 1, .width = width / ui.settings().scale, .has_bar = true, .moves = true});
+    begin_panel_over(ui, s.view.area,
+                     {.name = "Copied strokes", .across = 1, .width = width, .has_bar = true, .moves = true});
     ImGui::BeginDisabled(s.reported.file.viewing);
     const CopyToEdit c = copy_to_edit(l);
     canvas_part(ui, c, side);

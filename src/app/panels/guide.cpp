@@ -76,7 +76,7 @@ void guide(Session& s) {
     }
     if (!s.tools.pointer_down && step.done(s)) return go_to_step(s, h.step + 1);
     Ui& ui = s.ui;
-    begin_panel_over(ui, s.view.area, {.name = "guide", .across = 0.5f, .width = 400});
+    begin_panel_over(ui, s.view.area, {.name = "guide", .across = 0.5f, .width = ui.px(400)});
     char count[16];
     std::snprintf(count, sizeof count, "%d / %d", h.step + 1, kCount);
     ImGui::PushFont(ui.large);

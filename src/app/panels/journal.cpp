@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/panels/panels.h"
+#include "app/widgets/titles.h"
 #include "app/work/unrolled.h"
 #include "brush/preset/preset.h"
 

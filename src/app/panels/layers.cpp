@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <string_view>
 #include <utility>
 
 #include "app/panels/panels.h"
+#include "app/widgets/titles.h"
 
 namespace tuft::app {
 namespace {
@@ -163,10 +163,6 @@ void details(const LayerParts& s, const Layer& layer, std::size_t place) {
     if (ui.toggle("Locked", locked, "Takes no strokes")) change(s, layer, [locked](Layer& l) { l.locked = locked; });
 }
 
-bool is_number(std::string_view text) {
-    return !text.empty() && text.find_first_not_of("0123456789") == text.npos;
-}
-
 std::string row_text(const LayerParts& s, const Layer& layer) {
     std::string text = layer_title(s.ui, layer.name), more;
     const auto add = [&](const std::string& word) { more += (more.empty() ? "" : ", ") + word; };
@@ -220,23 +216,6 @@ void row(const LayerParts& s, const Layer& layer, std::size_t place) {
 }
 
 }  // namespace
-
-std::string numbered_title(const Ui& ui, const std::string& name, const char* word) {
-    const std::string given = std::string(word) + " ";
-    const bool numbered = name.starts_with(given) && is_number(std::string_view(name).substr(given.size()));
-    return numbered ? std::string(ui.tr(word)) + " " + name.substr(given.size()) : name;
-}
-
-std::string layer_title(const Ui& ui, const std::string& name) {
-    // "NAME copy" and "NAME copy N", as `duplicate` and stroke::free_name make them.
-    constexpr std::string_view kCopy = " copy";
-    if (const std::size_t at = name.rfind(kCopy); at != std::string::npos && at > 0) {
-        const std::string number = name.substr(at + kCopy.size());
-        if (number.empty() || (number[0] == ' ' && is_number(std::string_view(number).substr(1))))
-            return layer_title(ui, name.substr(0, at)) + " " + ui.tr("copy") + number;
-    }
-    return numbered_title(ui, name, "Layer");
-}
 
 void layers_section(const LayerParts& s) {
     Ui& ui = s.ui;

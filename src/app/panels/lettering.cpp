@@ -159,7 +159,8 @@ void lettering_panel(Session& s) {
     if (s.tools.active != Tool::text || !s.paint_thread) return;
     Ui& ui = s.ui;
     Lettering& l = s.tools.lettering;
-    begin_panel_over(ui, s.view.area, {.name = "Write", .width = kLetteringWidth, .has_bar = true, .moves = true});
+    begin_panel_over(ui, s.view.area,
+                     {.name = "Write", .width = ui.px(kLetteringWidth), .has_bar = true, .moves = true});
     ImGui::BeginDisabled(s.reported.file.viewing);
     text_field(ui, l, ImGui::IsWindowAppearing() && l.wanted.text.empty() && !s.reported.file.viewing);
     style_row(ui, l);

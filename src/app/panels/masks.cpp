@@ -1,9 +1,9 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "app/panels/panels.h"
+#include "app/widgets/titles.h"
 #include "core/text/units.h"
 
 namespace tuft::app {
@@ -43,12 +43,6 @@ void list(Session& s) {
 }
 
 }  // namespace
-
-std::string mask_title(const Ui& ui, const std::string& name) {
-    for (const char* with : {" +", " \xc3\x97"})  // as paint's change_masks names two that are joined
-        if (name.ends_with(with)) return mask_title(ui, name.substr(0, name.size() - std::strlen(with))) + with;
-    return numbered_title(ui, name, "Mask");
-}
 
 void make_mask(Session& s, stroke::Mask mask) {
     const stroke::MaskTable& table = s.reported.document.masks;

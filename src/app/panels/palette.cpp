@@ -46,9 +46,10 @@ void palette_panel(Session& s) {
     p.width = 0;
     if (!p.shown || !s.paint_thread) return;
     Ui& ui = s.ui;
-    const float room = static_cast<float>(s.view.area.width) / ui.settings().scale - 2 * kPanelMargin;
-    begin_panel_over(ui, s.view.area,
-                     {.name = "palette", .width = std::min(330.0f, std::max(256.0f, 0.55f * room)), .below = true});
+    const float room = static_cast<float>(s.view.area.width) - 2 * ui.px(kPanelMargin);
+    begin_panel_over(
+        ui, s.view.area,
+        {.name = "palette", .width = std::min(ui.px(330), std::max(ui.px(256), 0.55f * room)), .below = true});
     const float third =
         (ImGui::GetContentRegionAvail().x - 3 * ImGui::GetStyle().ItemSpacing.x) / 4 / ui.settings().scale;
     const auto tool = [&](PaletteTool which, const char* name, const char* hint) {

@@ -23,7 +23,7 @@ bool begin_panel_over(const Ui& ui, const Area& area, const PanelOver& panel) {
     const float pad = ui.px(kPanelMargin);
     const ImVec2 from(static_cast<float>(area.x) + pad, static_cast<float>(area.y) + pad),
         room(static_cast<float>(area.width) - 2 * pad, static_cast<float>(area.height) - 2 * pad);
-    const float width = std::min(ui.px(panel.width), room.x), height = std::min(panel.height, room.y);
+    const float width = std::min(panel.width, room.x), height = std::min(panel.height, room.y);
     // A size that is not known yet counts by the pivot, which a later move would drop.
     ImGui::SetNextWindowPos(ImVec2(from.x + panel.across * (room.x - width), from.y + panel.down * (room.y - height)),
                             panel.moves ? ImGuiCond_Appearing : ImGuiCond_Always,

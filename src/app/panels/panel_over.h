@@ -12,9 +12,9 @@ namespace tuft::app {
 struct PanelOver {
     const char* name = "";       ///< its identity; its title where it has a bar, with an entry in the catalogues
     float across = 0, down = 0;  ///< place in the room: 0 left or top, 0.5 in the middle, 1 right or bottom
-    float width = 0;             ///< at scale 1; 0: as wide as its content
+    float width = 0;             ///< pixels; 0: as wide as its content
     float height = 0;            ///< pixels; 0: as high as its content
-    float alpha = 0.95f;         ///< of its ground
+    float alpha = 0.95f;         ///< opacity of its background
     bool has_bar = false;        ///< a bar with its title that rolls it up
     bool moves = false;          ///< it can be dragged, as far as it stays in the view
     bool below = false;          ///< the others come over it

@@ -110,14 +110,6 @@ void tool_panel(Session& s, float top, float bottom, float left);
 void colours_panel(Session& s, float top, float bottom, float left);
 /// Undo and redo, and how far long work is.
 void history_buttons(const HistoryParts& s);
-/// Returns a name "WORD N" in the language of the interface, another name as it is. `word`: English, has an entry in
-/// the catalogues.
-std::string numbered_title(const Ui& ui, const std::string& name, const char* word);
-/// Returns the name of a layer in the language of the interface where the document or the studio gave it, else as the
-/// person wrote it. "NAME copy" and "NAME copy N" are the title of NAME and the word of the interface for a copy.
-std::string layer_title(const Ui& ui, const std::string& name);
-/// The same for a mask. "NAME +" and "NAME ×", of two that are joined, are the title of NAME and that sign.
-std::string mask_title(const Ui& ui, const std::string& name);
 void layers_section(const LayerParts& s);
 /// The parts of the model: eye, lock, substrate. Nothing for a model whose file names fewer than two.
 void parts_section(const PartParts& s);

@@ -14,7 +14,7 @@ namespace {
 using Names = std::vector<std::string>;
 
 constexpr const char* kOfModel = "As the whole model";  // in place of a substrate's name
-constexpr float kRowHeight = 24, kMostRows = 8;         // pixels at scale 1; rows before the list scrolls
+constexpr float kPartHeight = 24, kMostRows = 8;        // pixels at scale 1; rows before the list scrolls
 
 const stroke::PartTable& table_of(const PartParts& s) {
     return s.reported.document.parts;
@@ -32,7 +32,7 @@ Names with_chosen(const PartParts& s, const std::string& name) {
 }
 
 bool icon_switch(const PartParts& s, const std::string& name, Icon icon, unsigned colour, const char* hint) {
-    const float side = s.ui.px(kRowHeight - 4);
+    const float side = s.ui.px(kPartHeight - 4);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::PushID(name.c_str());
     const bool pressed = ImGui::InvisibleButton("##icon", ImVec2(side, side));
@@ -91,7 +91,7 @@ void row(const PartParts& s, const std::string& name) {
     ImGui::SameLine();
     if (part.hidden) ImGui::PushStyleColor(ImGuiCol_Text, ui.faint);
     const std::string whole = row_text(s, part), text = ui.fitted(whole, ImGui::GetContentRegionAvail().x);
-    if (ui.entry((text + "###row").c_str(), s.parts.chosen.contains(name), ui.px(kRowHeight - 4))) choose(s, name);
+    if (ui.entry((text + "###row").c_str(), s.parts.chosen.contains(name), ui.px(kPartHeight - 4))) choose(s, name);
     if (part.hidden) ImGui::PopStyleColor();
     ui.mark("part " + name);
     if (text != whole) ui.hint(whole.c_str());
@@ -134,7 +134,7 @@ void parts_section(const PartParts& s) {
     std::erase_if(s.parts.chosen, [&](const std::string& name) { return std::ranges::find(all, name) == all.end(); });
     if (!ui.section("Parts", !table_of(s).parts.empty(), std::to_string(all.size()).c_str())) return;
     const float rows = std::min(static_cast<float>(all.size()), kMostRows);
-    ImGui::BeginChild("parts", ImVec2(0, ui.px(rows * (kRowHeight - 2) + 2)));
+    ImGui::BeginChild("parts", ImVec2(0, ui.px(rows * (kPartHeight - 2) + 2)));
     for (const std::string& name : all) row(s, name);
     ImGui::EndChild();
     actions(s);

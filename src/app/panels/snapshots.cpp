@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/panels/panels.h"
+#include "app/widgets/titles.h"
 
 /// Named states of the journal: their list, and the comparison with the work as it is.
 namespace tuft::app {

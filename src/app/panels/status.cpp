@@ -228,7 +228,7 @@ void tuft_inset(Session& s) {
     begin_panel_over(ui, s.view.area,
                      {.name = "tuft",
                       .down = 1,
-                      .width = kInsetWidth,
+                      .width = width,
                       .height = height,
                       .alpha = 0.82f,
                       .below = true,

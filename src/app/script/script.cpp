@@ -243,10 +243,10 @@ std::optional<bool> Script::wait_for(Studio& studio, const ScriptCommand& c, dou
     const std::string word = c.words.empty() ? "" : c.words[0];
     if (c.name == "wait-ready") {
         if (waited > (word.empty() ? kLongestWait : std::atof(word.c_str()))) fail(c, "waited too long");
-        return is_settled(s) && !s.view.model_changed && waited > 0 && frames_ > 1;
+        return is_settled(s) && !s.brush.shelf.busy() && !s.view.model_changed && waited > 0 && frames_ > 1;
     }
     if (c.name == "wait") return waited >= std::atof(word.c_str());
-    if (c.name == "click" || c.name == "right-click") {
+    if (c.name == "click" || c.name == "right-click" || (c.name == "move" && c.points.empty())) {
         const Ui::Place* place = s.ui.find(word);
         if (!place && waited < kLabelWait) return false;
         if (!place) fail(c, Message("'{}' is not on the screen", word));
@@ -255,7 +255,10 @@ std::optional<bool> Script::wait_for(Studio& studio, const ScriptCommand& c, dou
             wait_.place = {place->x, place->y};
             return false;
         }
-        click(place->x, place->y, c.name == "right-click" ? 1 : 0);
+        if (c.name == "move")
+            add({.kind = Event::Kind::move, .x = place->x, .y = place->y}, sample_);
+        else
+            click(place->x, place->y, c.name == "right-click" ? 1 : 0);
         return true;
     }
     if (c.name == "expect") {

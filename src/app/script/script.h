@@ -29,7 +29,7 @@ struct ScriptCommand {
     int line = 0;
     std::string name;
     std::vector<std::string> words;   ///< arguments without quotes
-    std::vector<ScriptPoint> points;  ///< of `move`, `stroke`
+    std::vector<ScriptPoint> points;  ///< of `move` to a place, `stroke`
 };
 
 /// Reads a script; script_parse.cpp describes the format. Throws `Error` with file and line for an unknown command or
@@ -63,7 +63,7 @@ class Script {
     struct Wait {
         bool on = false;
         double since = -1;
-        ScriptPoint place;  ///< of the label to click
+        ScriptPoint place;  ///< of the label to click or to move to
     };
     /// Requests to the player of the script.
     struct Wanted {

@@ -15,7 +15,7 @@
 ///   revise FILE             as if it was chosen as the revised model
 ///   wait-ready [SECONDS]    until nothing runs in the background, that long at most (120)
 ///   wait SECONDS
-///   move PLACE              cursor
+///   move PLACE | LABEL      the cursor; a word with a comma is a place
 ///   press [left|right|middle]     release [left|right|middle]
 ///   stroke PLACE PLACE ...  pen down at the first, along straight lines, up at the last
 ///   rate HERTZ              samples a second of strokes (250)
@@ -164,7 +164,8 @@ std::vector<ScriptCommand> parse_script(const std::filesystem::path& path) {
         const int n = static_cast<int>(c.words.size());
         if (n < known->second.first || n > known->second.second)
             throw Error(path.string(), number, Message("'{}' needs {} word(s) after it", c.name, known->second.first));
-        if (c.name == "move" || c.name == "stroke")
+        const bool to_label = c.name == "move" && c.words[0].find(',') == std::string::npos;
+        if ((c.name == "move" && !to_label) || c.name == "stroke")
             for (const std::string& word : c.words) c.points.push_back(parse_point(word, path.string(), number));
         check_numbers(c, path.string());
         commands.push_back(std::move(c));

@@ -231,9 +231,10 @@ void close_now(Session& s, const CloseRequest& request) {
 void close_model(Session& s) {
     if (!s.paint_thread) return;
     remember_brush(s.brush, s.paint_thread.get());
-    finish_kept_copies(s);
+    finish_storing_copies(s);
     s.colours.choice.in_hand.reset();
     s.layers.list.pictures.clear();
+    s.parts.chosen.clear();
     const bool drew = leave_arm(s.arm, s.paint_thread.get());
     const bool empty = !drew && s.journal.lines.empty() && s.paint_thread->idle(), viewing = s.reported.file.viewing;
     const fs::path project = finish_work(s);

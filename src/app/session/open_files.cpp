@@ -40,11 +40,11 @@ fs::path glyphs_beside(const fs::path& file) {
 
 void keep_copy(Session& s) {
     if (s.reported.file.viewing) return;
-    s.tools.copies.keep(s.tools.lettering.wanted, s.tools.lettering.kept);
+    s.tools.copies.read(s.tools.lettering.wanted, s.tools.lettering.kept);
 }
 
-void poll_kept_copies(Session& s) {
-    std::optional<CopyKeeper::Read> read = s.tools.copies.poll();
+void store_read_copies(Session& s) {
+    std::optional<CopyReader::Read> read = s.tools.copies.poll();
     if (!read || !s.paint_thread) return;
     if (!read->copy)
         return show_message(s.status, Message("The copied picture is not kept in the project: {}", read->fault));
@@ -61,10 +61,10 @@ void poll_kept_copies(Session& s) {
         *same = std::move(*read->copy);
 }
 
-void finish_kept_copies(Session& s) {
+void finish_storing_copies(Session& s) {
     while (s.tools.copies.busy()) {
         s.tools.copies.wait();
-        poll_kept_copies(s);
+        store_read_copies(s);
     }
 }
 

@@ -18,10 +18,10 @@ std::filesystem::path glyphs_beside(const std::filesystem::path& file);
 /// Stores the copied character that is written in the project, in place of an earlier copy of the picture. Returns at
 /// once.
 void keep_copy(Session& s);
-/// Takes the pictures that were read to be kept; says why one is not kept.
-void poll_kept_copies(Session& s);
+/// Stores the copies that were read in the project; says why one is not kept.
+void store_read_copies(Session& s);
 /// Waits for them, before the project is closed.
-void finish_kept_copies(Session& s);
+void finish_storing_copies(Session& s);
 /// Copies a character that the project keeps.
 void take_kept_copy(Session& s, const KeptCopy& copy);
 /// Writes the copied character as JSON (hanzi-writer-data), which is a source of characters.

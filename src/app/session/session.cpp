@@ -83,10 +83,10 @@ void poll_session(Session& s) {
         Message away = choose_brush(s.brush, *s.paint_thread, s.journal.lines, s.tools.pointer.pressure);
         if (!away.empty() && s.status.text.empty()) show_message(s.status, std::move(away));
     }
-    s.brush.shelf.watch();
+    s.brush.shelf.watch(s.brush.presets, brush::sized_name(s.brush.preset).base);
     poll_colour(s.colours, s.brush);
     s.tools.letters.update(s.tools.lettering);
-    poll_kept_copies(s);
+    store_read_copies(s);
     // Painting a stroke of the hand comes first.
     s.brush.tried.update(!s.tools.pointer_down && !s.project.opening.running() &&
                          (!s.paint_thread || s.paint_thread->idle()));

@@ -53,7 +53,7 @@ bool loads(const std::string& brush) {
         brush::load_preset(brush);
         return true;
     } catch (const Error&) {
-        return false;  // of another version, or a file that is away
+        return false;  // of another version, or a file that is missing
     }
 }
 
@@ -101,7 +101,7 @@ void take_own_brush(BrushSettings& brush, const fs::path& file) {
 }
 
 void take_brush(BrushSettings& brush, const std::string& name) {
-    // A file that was away may be back since the last look.
+    // A file that was missing may be back since the last look.
     if (!brush.shelf.at(name).fault.empty())
         if (const ShelfBrush& now = brush.shelf.read(name); !now.fault.empty()) throw Error(now.fault);
     brush.preset = name;

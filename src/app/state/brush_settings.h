@@ -41,7 +41,7 @@ void take_brush(BrushSettings& brush, const std::string& name);
 void take_own_brush(BrushSettings& brush, const std::filesystem::path& file);
 /// Takes the brush of a file off the list, at the next start too. The file stays.
 void forget_own_brush(BrushSettings& brush, const std::string& name);
-/// Returns the files of brushes that were added before, also those that are away.
+/// Returns the files of brushes that were added before, also those that are missing.
 std::vector<std::string> remembered_own_brushes();
 /// Returns the line width in metres for the first brush on a model, and the brush of the same hair as `hair_of` that
 /// draws it at `pressure`.
@@ -52,7 +52,8 @@ std::string first_brush(const std::vector<std::string>& brushes, const std::stri
 /// Returns what is wrong with the one last used; empty: nothing.
 Message choose_brush(BrushSettings& brush, const PaintThread& work, std::span<const StrokeLine> lines, double pressure);
 /// Stores the chosen brush for this model, where the user chose it. Without a model it does nothing. One that
-/// `choose_brush` took in place of a brush whose file is away is not stored: that one is taken again when it is back.
+/// `choose_brush` took in place of a brush whose file is missing is not stored: that one is taken again when it is
+/// back.
 void remember_brush(BrushSettings& brush, const PaintThread* work);
 /// Returns whether turning the brush about its axis matters: `brush::can_be_turned`.
 bool brush_can_be_turned(BrushSettings& brush);

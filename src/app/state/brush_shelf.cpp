@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "core/error.h"
+#include "core/files/modified_time.h"
 
 namespace fs = std::filesystem;
 
@@ -13,12 +15,6 @@ namespace {
 constexpr std::array<const char*, 8> kTitles{"goat", "mixed", "wolf", "flat", "liner", "round", "sponge", "own"};
 constexpr double kLinerThicknesses = 6;
 constexpr std::chrono::seconds kBetweenLooks{1};
-
-std::optional<fs::file_time_type> time_of(const std::string& file) {
-    std::error_code ec;
-    const fs::file_time_type time = fs::last_write_time(file, ec);
-    return ec ? std::nullopt : std::optional(time);
-}
 
 }  // namespace
 
@@ -41,30 +37,69 @@ const ShelfBrush& BrushShelf::at(const std::string& name) {
 }
 
 const ShelfBrush& BrushShelf::read(const std::string& name) {
+    return take(name, read_file_of(name));
+}
+
+BrushShelf::Read BrushShelf::read_file_of(const std::string& name) {
+    Read read;
+    // Before it is read: what is written meanwhile is seen at the next look.
+    if (is_own_brush(name)) read.written = modified_time(name);
+    try {
+        read.preset = brush::load_preset(name);
+    } catch (const Error& error) {
+        read.fault = is_own_brush(name) && !read.written ? Message("The file of this brush is missing: {}", name)
+                                                         : error.message();
+    }
+    return read;
+}
+
+const ShelfBrush& BrushShelf::take(const std::string& name, Read read) {
     ShelfBrush& brush = brushes_[name];
     brush.reading = ++readings_;
-    brush.fault = {};
-    // Before it is read: what is written meanwhile is seen at the next look.
-    if (is_own_brush(name)) brush.written = time_of(name);
-    try {
-        brush.preset = brush::load_preset(name);
-    } catch (const Error& error) {
-        brush.fault = is_own_brush(name) && !brush.written ? Message("The file of this brush is away: {}", name)
-                                                           : error.message();
-    }
+    if (read.preset) brush.preset = std::move(*read.preset);
+    brush.fault = std::move(read.fault);
+    brush.written = read.written;
     return brush;
 }
 
-void BrushShelf::watch() {
+void BrushShelf::watch(const std::vector<std::string>& names, const std::string& in_hand) {
+    poll();
     const auto now = std::chrono::steady_clock::now();
     if (now - looked_ < kBetweenLooks) return;
     looked_ = now;
+    std::erase_if(brushes_, [&](const auto& entry) {
+        const std::string& name = entry.first;
+        return is_own_brush(name) && name != in_hand && std::find(names.begin(), names.end(), name) == names.end();
+    });
     look();
 }
 
 void BrushShelf::look() {
+    if (busy()) return;
+    std::vector<Known> known;
     for (const auto& [name, brush] : brushes_)
-        if (is_own_brush(name) && time_of(name) != brush.written) read(name);
+        if (is_own_brush(name)) known.push_back({name, brush.reading, brush.written});
+    if (known.empty()) return;
+    looking_ = std::async(std::launch::async, [known = std::move(known)] {
+        std::vector<Changed> changed;
+        for (const Known& brush : known)
+            if (modified_time(brush.name) != brush.written) changed.push_back({brush, read_file_of(brush.name)});
+        return changed;
+    });
+}
+
+void BrushShelf::wait() const {
+    if (busy()) looking_.wait();
+}
+
+void BrushShelf::poll() {
+    if (!busy() || looking_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    for (Changed& changed : looking_.get()) {
+        // One that was read meanwhile, or let go, is another one.
+        const auto at = brushes_.find(changed.before.name);
+        if (at == brushes_.end() || at->second.reading != changed.before.reading) continue;
+        take(changed.before.name, std::move(changed.read));
+    }
 }
 
 const std::vector<BrushFamily>& BrushShelf::families(const std::vector<std::string>& names) {

@@ -28,7 +28,7 @@ struct ToolState {
     Writing writing;
     Lettering lettering;
     LetteringReader letters;                                 ///< reads the characters of the text
-    CopyKeeper copies;                                       ///< reads the pictures that the project keeps
+    CopyReader copies;                                       ///< reads the pictures that the project keeps
     std::vector<std::vector<PreviewPoint>> writing_preview;  ///< lines of the drawing or the text at the cursor
     Message place_fault;                                     ///< why the text cannot lie at the cursor
     bool snap = true;                            ///< drawings snap to planes of symmetry and to other drawings

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/files/modified_time.h"
 #include "stroke/drawing/drawing.h"
 #include "writer/copy/copied_glyph.h"
 #include "writer/fit/writer.h"
@@ -116,8 +117,7 @@ bool Text::blank() const {
 Glyph TextReader::copy(const TextRequest& request) {
     const std::u32string name = characters_of(request.text);
     if (name.size() > 1) throw Error(Message("a picture is copied as one character, and the text is its name"));
-    std::error_code ec;
-    const auto changed = std::filesystem::last_write_time(request.like, ec);
+    const auto changed = modified_time(request.like);
     if (request.like != picture_path_ || changed != picture_time_) {
         picture_path_.clear();
         picture_ = io::read_image8(request.like);

@@ -56,7 +56,7 @@ class TextReader {
     Glyph copy(const TextRequest& request);
 
     std::filesystem::path path_, picture_path_;
-    std::filesystem::file_time_type picture_time_;
+    std::optional<std::filesystem::file_time_type> picture_time_;
     io::Image8 picture_;
     std::optional<CopiedPicture> copied_;
     std::unique_ptr<GlyphSource> own_, bundled_;

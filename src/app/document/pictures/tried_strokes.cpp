@@ -40,6 +40,7 @@ void TriedStrokes::update(bool may_paint) {
         else if (Picture& p = pictures_[painted.wish.brush]; p.reading == painted.wish.reading)
             p.picture.rgb = std::move(painted.rgb);
     }
+    std::erase_if(wanted_, [&](const Wish& wish) { return pictures_[wish.brush].reading != wish.reading; });
     if (!may_paint || wanted_.empty()) return;
     stop_ = false;
     painting_ = std::async(std::launch::async, [this, wish = wanted_.front()] { return paint(wish); });
@@ -67,7 +68,7 @@ TriedStrokes::Painted TriedStrokes::paint(Wish wish) const {
     } catch (const Cancelled&) {
         out.stopped = true;
     } catch (const std::exception&) {
-        // A brush whose file is away is shown by its name.
+        // A brush whose file is missing is shown by its name.
     }
     return out;
 }
