@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "brush/preset/preset.h"
 #include "brush/preset/rest_shape.h"
@@ -506,6 +507,43 @@ TEST(WideOutline, NoGapIsLeftWhereHairLeapt) {
     EXPECT_TRUE(trails_passed(now, {}).empty());
 }
 
+/// The edge of a filbert that is lifted while it goes on runs forward faster than the hand. Its flank is a line: it
+/// goes straight from stamp to stamp.
+TEST(WideOutline, TheFlankOfALiftedFilbertHasNoTeeth) {
+    brush::Tuft tuft = brush::make_tuft(brush::load_preset("filbert-12"), 5);
+    const brush::ContactPlane ground;
+    const double length = tuft.preset.length;
+    constexpr double kStep = 0.1e-3, kBin = 0.05e-3;  // metres: between stamps, between places along the flank
+    std::vector<double> flank;                        // metres beside the path, by place along it
+    Recycled<Trail> before;
+    double end = 0;  // metres along the path, where the flank's hair leaves
+    for (int i = 0; i <= 320; ++i) {
+        // Pressed within 3 mm, drawn 19 mm along y, lifted within 10 mm.
+        const double gone = kStep * i, press = std::min({1.0, gone / 3e-3, (32e-3 - gone) / 10e-3});
+        const brush::Pose pose{.position = {0, gone, length - 0.25 * length * press}};
+        const brush::TuftState state = brush::step(tuft, pose, std::span(&ground, 1), 3e-3);
+        const Recycled<Trail> trails = find_trails(state, kFlat, {}, length, 1e-4);
+        const Recycled<Trail> leapt = leapt_trails(trails, kFlat, before, kFlat, {0, kStep});
+        before = trails;
+        if (trails.empty() || trails.front().branch != 0 || gone < 10e-3) continue;
+        for (const Outline& o : outlines_of(trails, 20, leapt))
+            for (const Vec2& p : curve_points(o, 16)) {
+                const auto k = static_cast<std::size_t>(std::max(0.0, p.y / kBin));
+                if (k >= flank.size()) flank.resize(k + 1, 0);
+                flank[k] = std::max(flank[k], -p.x);
+            }
+        end = std::max(end, kFlat.to_local(Vec3(trails.front().cuts.front().centre, 0)).y);
+    }
+    const auto last = static_cast<std::size_t>((end - 0.5e-3) / kBin);
+    ASSERT_GT(last, 400u);
+    constexpr std::size_t kReach = 8;  // places, longer than a tooth
+    double tooth = 0;
+    for (std::size_t k = last - 100; k < last - kReach; ++k)
+        tooth = std::max(tooth, 0.5 * (flank[k - kReach] + flank[k + kReach]) - flank[k]);
+    // A tenth of a hair's thickness.
+    EXPECT_LT(tooth, 0.02e-3);
+}
+
 /// Spines that are not joined keep outlines of their own; joined ones get one more between two, and one at the heel.
 TEST(WideOutline, OutlinesFollowTheOpenings) {
     brush::TuftState tuft = dragged("flat-12");
@@ -516,6 +554,32 @@ TEST(WideOutline, OutlinesFollowTheOpenings) {
         for (double& o : opening.width) o = 1e-3;
     EXPECT_EQ(outlines_of(tuft, kFlat).size(), 5u);
     EXPECT_LT(coverage_area(rasterise(outlines_of(tuft, kFlat), kFlat, 0, kCell)), whole);
+}
+
+/// Hair of a filbert that is hardly dry is one patch: ink spans the wedges between hairs of its toe, where no hair
+/// lies.
+TEST(WideOutline, HardlyDryHairOfAFilbertIsClosed) {
+    brush::Tuft tuft = brush::make_tuft(brush::load_preset("filbert-12"), 5);
+    const brush::ContactPlane ground;
+    const double length = tuft.preset.length;
+    brush::TuftState state;
+    for (int i = 0; i <= 300; ++i) {
+        const double gone = 0.1e-3 * i, press = std::min({1.0, gone / 3e-3, 0.3 + (30e-3 - gone) / 10e-3});
+        state = brush::step(tuft, {.position = {0, gone, length - 0.25 * length * press}}, std::span(&ground, 1), 3e-3);
+    }
+    const Recycled<Trail> trails = find_trails(state, kFlat, {}, length, 1e-4);
+    const Recycled<Outline> outlines = outlines_of(trails, 20);
+    const TouchingHair hair{trails, outlines, tuft.bundles, static_cast<int>(state.branches.size())};
+    const Recycled<double> wet(tuft.bundles.place.size(), 0.999);
+    const auto area = [&](double apart) {
+        HairInk ink{wet, 0, {0, 1}};
+        ink.apart = apart;
+        return coverage_area(draw_hair_marks(hair, ink, {kFlat, 0, kCell}).footprint);
+    };
+    const double closed = coverage_area(rasterise(outlines, kFlat, 0, kCell));
+    EXPECT_LT(area(1), 0.9 * closed) << "there are wedges";
+    EXPECT_DOUBLE_EQ(area(0), closed);
+    EXPECT_NEAR(area(0.5), 0.5 * (area(0) + area(1)), 0.005 * closed) << "levels of 1/255";
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ Outline outline_of(const Trail& trail, int points);
 Recycled<Outline> outlines_of(std::span<const Trail> trails, int points, std::span<const Trail> before = {});
 
 /// Returns the trails of the pose before in the frame of `trails`, where a patch leapt: from pose to pose, apart from
-/// the motion of the hand, a part of it moved by more than 0.4 of its own extent in that direction. The edge of hair
+/// the motion of the hand, a part of it moved by more than 0.15 of its own extent in that direction. The edge of hair
 /// that stands touches in a line that slips away by millimetres for a tenth of a millimetre of press. Empty where none
 /// leapt. `frame_before`: of `before`; `hand`: displacement of the hand, metres, (u, v) of `frame`.
 Recycled<Trail> leapt_trails(std::span<const Trail> trails, const Frame& frame, std::span<const Trail> before,

@@ -314,6 +314,12 @@ class StrandPen {
     double widest_ = 0;         // metres
 };
 
+/// level = 255 − apart (255 − level), rounded; apart 0–256.
+TUFT_CLONES void close_gaps(std::uint8_t* __restrict level, std::uint16_t apart, std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i)
+        level[i] = static_cast<std::uint8_t>(255 - static_cast<std::uint16_t>((255 - level[i]) * apart + 127) / 256);
+}
+
 /// coverage = coverage level / 255, rounded; returns the sum of what it was. For at most 2^16 cells.
 TUFT_CLONES std::uint32_t scale_coverage(std::uint8_t* __restrict coverage, const std::uint8_t* __restrict level,
                                          int n) {
@@ -464,6 +470,8 @@ HairMarks draw_hair_marks(const TouchingHair& hair, const HairInk& ink, const Pi
     }
     Recycled<std::uint8_t> level;
     picture.bands.copy_rows(level);
+    if (ink.apart < 1)
+        close_gaps(level.data(), static_cast<std::uint16_t>(256 * std::clamp(ink.apart, 0.0, 1.0) + 0.5), level.size());
     std::uint64_t sum = 0;
     for (std::size_t row = 0; row < f.coverage.size(); row += static_cast<std::size_t>(f.width))
         sum += scale_coverage(f.coverage.data() + row, level.data() + row, f.width);

@@ -54,6 +54,8 @@ struct HairInk {
     Vec2 course{0};
     /// 0–1: sine of the angle between the tuft's motion over its last millimetre and `course`.
     double sine_to_course = 0;
+    /// 0–1: part of the picture that is single hairs; the rest is closed, also where ink spans hairs of other lengths.
+    double apart = 1;
 };
 
 /// Returns the film of a bundle over the film that closes its gaps,
@@ -70,8 +72,9 @@ struct HairMarks {
     double closed_area = 0;  ///< m², of the outlines
 };
 
-/// Returns the picture of the bristles' marks inside the outlines of the trails. Areas are exact at the edges. As
-/// the wetness of every bundle goes to 1 the picture becomes that of `rasterise` (rough_edge.h). All lengths are in
+/// Returns the picture of the bristles' marks inside the outlines of the trails, c (1 − apart (1 − m)), with the
+/// coverage c of the outlines, which is that of `rasterise` (rough_edge.h), and m of the marks. Areas are exact at the
+/// edges. As the wetness of every bundle goes to 1, m goes to 1 in the outline of each trail. All lengths are in
 /// metres along hair and path, so the result does not depend on sampling or texel size. Cost: about 0.2 ms for all 500
 /// bristles.
 ///

@@ -124,7 +124,7 @@ Outline outline_of(const Joint& joint, int points) {
     return closed_outline(envelope, patch, {*front, *rear}, points, joint.trail.front()->strip);
 }
 
-constexpr double kLeap = 0.4;       // of a patch's extent: what it moves by more, it leaps
+constexpr double kLeap = 0.15;      // of a patch's extent: what it moves by more, it leaps
 constexpr int kSweptSamples = 8;    // sections of a trail that leapt
 constexpr double kMostPassed = 24;  // poses of a leap
 constexpr double kMostArc = 1.2;    // of the distance of a chord's middle; 1.155 in a ring of six

@@ -87,6 +87,7 @@ void HairContact::draw_hairs(Stamp& stamp, const footprint::TouchingHair& hair, 
     const Vec2 of_hand(frame.to_local(frame.origin + motion.hand_course)),
         of_hair(frame.to_local(frame.origin + motion.hair_course));
     const double lengths = glm::length(of_hand) * glm::length(of_hair);
+    const double apart = smooth_step(wetness.lack / kSeparateLack);
     const footprint::HairInk ink{
         .wet = wetness.of_bundle,
         .travel = motion.travel,
@@ -94,11 +95,12 @@ void HairContact::draw_hairs(Stamp& stamp, const footprint::TouchingHair& hair, 
         .before = previous_,
         .press_share = motion.press_share,
         .course = of_hand,
-        .sine_to_course = lengths > 0 ? std::abs(of_hand.x * of_hair.y - of_hand.y * of_hair.x) / lengths : 0};
+        .sine_to_course = lengths > 0 ? std::abs(of_hand.x * of_hair.y - of_hand.y * of_hair.x) / lengths : 0,
+        .apart = apart};
     footprint::HairMarks marks = footprint::draw_hair_marks(hair, ink, {frame, contact.triangle, options_.closed.cell});
     stamp.footprint = std::move(marks.footprint);
     stamp.by_hair = true;
-    stamp.separation = static_cast<float>(smooth_step(wetness.lack / kSeparateLack));
+    stamp.separation = static_cast<float>(apart);
     const double dry = std::max(1e-3, 1 - wetness.mean);
     stamp.grain_film = kGrainFilm * 2 * wetness.mean / (dry * dry) - kHeldUp * options_.closed.grain.relief * dry;
     closed_area_ = marks.closed_area;
