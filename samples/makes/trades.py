@@ -122,12 +122,32 @@ def inside(polygon, x, y):
     return nearest if odd else -nearest
 
 
+STEP = 2.0  # mm between keys of a path along a rim
+
+
+def along_the_rim(polygon, margin):
+    """A closed path `margin` inside a polygon; where it is narrower, no path."""
+    area = sum(ax * by - bx * ay for (ax, ay), (bx, by) in zip(polygon, polygon[1:] + polygon[:1]))
+    path = []
+    for (ax, ay), (bx, by) in zip(polygon, polygon[1:] + polygon[:1]):
+        length = math.dist((ax, ay), (bx, by))
+        if length < 1e-9:
+            continue
+        out = math.copysign(margin / length, area)
+        x, y = 0.5 * (ax + bx) - out * (by - ay), 0.5 * (ay + by) + out * (bx - ax)
+        if inside(polygon, x, y) >= 0.98 * margin and (not path or math.dist(path[-1], (x, y)) >= STEP):
+            path.append((x, y))
+    return path + path[:1]
+
+
 def fill(polygon, turn, margin, spacing):
-    """A path to and fro over the places at least `margin` inside, in rows turned by `turn` degrees."""
+    """A path round the rim of the places at least `margin` inside, then to and fro over them, in rows turned by `turn`
+    degrees: the ends of rows alone leave an edge of scallops."""
     c, s = math.cos(math.radians(turn)), math.sin(math.radians(turn))
     across = [s * x - c * y for x, y in polygon]
     along = [c * x + s * y for x, y in polygon]
-    path = []
+    path = along_the_rim(polygon, margin)
+    margin += 0.5 * spacing  # the brush swings out where it turns
     rows = max(1, round((max(across) - min(across) - 2 * margin) / spacing))
     for row in range(rows + 1):
         v = min(across) + margin + (max(across) - min(across) - 2 * margin) * row / rows
@@ -154,7 +174,7 @@ def blue_and_white():
         leaf = outline in LEAVES
         start = outline[2 if leaf else 0]
         far = outline[-1] if leaf else outline[len(outline) // 2]
-        press, margin, spacing = (0.2, 0.9, 0.7) if leaf else (0.24, 1.2, 1.1)
+        press, margin, spacing = (0.2, 0.7, 0.7) if leaf else (0.24, 1.2, 1.1)
         turn = math.degrees(math.atan2(far[1] - start[1], far[0] - start[0]))
         path = fill(dense(outline), turn, margin, spacing)
         (small if leaf else washes).append(Stroke("wash").go(

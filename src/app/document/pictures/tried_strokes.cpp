@@ -55,7 +55,7 @@ TriedStrokes::Painted TriedStrokes::paint(Wish wish) const {
     Painted out{.wish = std::move(wish), .rgb = {}};
     try {
         const brush::Preset preset = brush::load_preset(out.wish.brush);
-        CacheKey key("tried stroke 1");
+        CacheKey key("tried stroke 2");
         key.add_text(brush::preset_toml(preset));
         const auto take = [&](CacheReader& in) {
             std::vector<std::uint8_t> rgb = in.get<std::uint8_t>();
