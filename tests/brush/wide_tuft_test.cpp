@@ -368,7 +368,7 @@ TEST(WideTuft, AStepTakenAgainOnTiltedPlanesEndsWhereAFreshOneDoes) {
         const TuftBend before = tuft;
         Recycled<ContactPlane> tilted;
         for (const Vec3& node : predicted_nodes(tuft, pose)) {
-            const double tilt = 0.03 * std::sin(300 * node.x);  // radians: 20 µm over the spines' spacing
+            const double tilt = 0.1 * std::sin(300 * node.x);  // radians
             tilted.push_back({{node.x, node.y, 0}, glm::normalize(Vec3{tilt, 0, 1})});
         }
         StepStart start;
@@ -379,7 +379,9 @@ TEST(WideTuft, AStepTakenAgainOnTiltedPlanesEndsWhereAFreshOneDoes) {
         const TuftState fresh = step(tuft, pose, tilted, 1e-3);
         EXPECT_TRUE(again.converged);
         EXPECT_LT(again.work.solves, fresh.work.solves);
-        EXPECT_LT(glm::distance(again.force, fresh.force), 0.03 * glm::length(fresh.force));
+        // Measured 0.2 and 1.1 %: what friction held in the parts before, on planes that are not tilted. The tilt
+        // itself changes the force of the ring by 3.9 %.
+        EXPECT_LT(glm::distance(again.force, fresh.force), 0.02 * glm::length(fresh.force));
     }
 }
 
