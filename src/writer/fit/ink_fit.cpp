@@ -24,6 +24,8 @@ constexpr std::size_t kCornerReach = 3;  // stations
 constexpr double kNeedle = 24;           // units about an end in which its ink must not reach further than wanted
 constexpr double kNeedleBack = 0.6;      // part of that taken back at once
 constexpr float kDeepest = 24;           // units of depth that count
+constexpr int kRough = 2;                // tries that are drawn in larger steps: they are far off anyway
+constexpr double kRougher = 1.6;         // of the step
 constexpr double kGood = 0.98, kSettled = 0.002;  // a path that scores so much, and gains less in a try, stays
 constexpr double kBehind = 0.06;                  // over the tries so far: less than the best by more is given up
 
@@ -227,11 +229,12 @@ stroke::PlaneInk draw_on_plane(std::span<const Station> stations, const BrushHan
 FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& target, const BrushHand& hand,
                        const Pace& pace, const FitOptions& options, const std::vector<Station>& other) {
     const std::vector<float> depths = depths_of(target.wanted);
-    const auto try_out = [&](const std::vector<Station>& next, const std::vector<Station>& sides) {
+    const auto try_out = [&](const std::vector<Station>& next, const std::vector<Station>& sides, int t) {
         check_interrupt();
+        const double step = t <= kRough ? kRougher * options.step : options.step;
         const stroke::StrokeSamples trace = samples_of(next, hand, pace);
         const stroke::PlaneInk ink =
-            stroke::plane_ink(trace, hand.preset, hand.hold, options.step * hand.unit, target.wanted.cell * hand.unit);
+            stroke::plane_ink(trace, hand.preset, hand.hold, step * hand.unit, target.wanted.cell * hand.unit);
         const std::vector<float> coverage = coverage_by(ink, target.wanted);
         return Try{score_of(target, depths, coverage), errors_of(next, sides, target, coverage, ink, trace, hand.unit)};
     };
@@ -241,7 +244,7 @@ FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& ta
         FitResult own{.stations = first};
         std::vector<Station> next = first;
         for (int t = 1, idle = 0; t <= options.tries && idle < options.idle; ++t) {
-            const Try now = t == 1 ? first_try : try_out(next, manner.first_sides ? first : next);
+            const Try now = t == 1 ? first_try : try_out(next, manner.first_sides ? first : next, t);
             const double gain = now.reached.score - own.score;
             idle = gain > 1e-4 ? 0 : idle + 1;
             if (gain > 0) own.score = now.reached.score, own.iou = now.reached.iou, own.stations = next;
@@ -258,7 +261,7 @@ FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& ta
     };
     for (const std::vector<Station>* begin : {&stations, &other}) {
         if (begin->empty() || (best.tries > 0 && best.iou >= options.weak)) continue;
-        const Try first_try = try_out(*begin, *begin);
+        const Try first_try = try_out(*begin, *begin, 1);
         ++best.tries;
         for (const Manner& manner : kManners)
             if (&manner == kManners || best.iou < options.weak) fit_from(*begin, first_try, manner);
