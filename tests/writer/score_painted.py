@@ -111,8 +111,7 @@ def smooth_curvature(line, sigma=6.0):
 def maxima(mask, least):
     out = []; points = []
     for line in contours(mask):
-        z, k = smooth_curvature(line); area = .5*np.sum(np.imag(np.conj(z)*np.roll(z, -1)))
-        k = k*(1 if area >= 0 else -1); points.append(z)
+        z, k = smooth_curvature(line); points.append(z)   # ink lies on the same side of counters too
         top = (k > least) & (k >= np.roll(k, 1)) & (k > np.roll(k, -1))
         out += [(z[i], k[i]) for i in np.where(top)[0]]
     return out, np.concatenate(points) if points else np.zeros(0, complex)
