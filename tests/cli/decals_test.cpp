@@ -205,5 +205,20 @@ TEST_F(Trajectories, AreWrittenInEachLanguageAndRefusedWhereTheHolderHits) {
         EXPECT_EQ(tuft("trajectory " + project + " -o " + path("b.json") + " " + options).status, 2) << options;
 }
 
+// A drawing whose lines are filled as areas has no path of a brush: it is said how it gets one.
+TEST_F(Trajectories, OfFilledAreasNameTheOptionThatPaintsThemByStrokes) {
+    write("d.svg",
+          "<svg xmlns='http://www.w3.org/2000/svg' width='20mm' viewBox='0 0 20 20'><path d='M2 15L18 15' "
+          "stroke='#000' stroke-width='2'/></svg>");
+    const std::string paint = "paint " + model("sheet.ply") + " --strokes " + path("d.svg") +
+                              " --place 0,0,0 --atlas-size 128 --quiet --project ";
+    ASSERT_EQ(tuft(paint + path("areas.tuft")).status, 0);
+    const test::Ran none = tuft("trajectory " + path("areas.tuft") + " -o " + path("a.csv"));
+    EXPECT_EQ(none.status, 1);
+    EXPECT_NE(none.err.find("--areas brush"), std::string::npos) << none.err;
+    ASSERT_EQ(tuft(paint + path("strokes.tuft") + " --areas brush").status, 0);
+    EXPECT_EQ(tuft("trajectory " + path("strokes.tuft") + " --quiet -o " + path("a.csv")).status, 0);
+}
+
 }  // namespace
 }  // namespace tuft

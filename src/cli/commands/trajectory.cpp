@@ -121,7 +121,15 @@ int run(const TrajectoryWork& a) {
     const std::vector<stroke::JournalEntry> entries = project->file.strokes();
     find_presets(painting, entries);
     Painted painted = paint_strokes(entries, painting, console);
-    if (painted.paths.empty()) throw Error(a.project.string(), "there are no strokes to make a trajectory of");
+    if (painted.paths.empty()) {
+        const bool filled = std::any_of(entries.begin(), entries.end(), [](const stroke::JournalEntry& entry) {
+            return entry.as<stroke::Fill>() != nullptr;
+        });
+        throw Error(a.project.string(), filled
+                                            ? "there are no strokes to make a trajectory of, only filled areas; paint "
+                                              "a drawing with --areas brush to have it in strokes"
+                                            : "there are no strokes to make a trajectory of");
+    }
     if (painted.left_out > 0)
         console.note(fmt::format("warning: {} that no robot performs are left out (fills, layers, masks, the palette)",
                                  counted(painted.left_out, "change")));
