@@ -34,11 +34,11 @@ double distance_to(const std::vector<Vec2>& line, const Vec2& p, Vec2* nearest =
 }
 
 /// Room to the nearest other line at a point, over all of them and by the side of the direction.
-struct Room {
+struct SideRoom {
     double all = kFarNeighbour, left = kFarNeighbour, right = kFarNeighbour;
 };
-Room room_at(const Glyph& glyph, std::size_t stroke, const Vec2& p, const Vec2& direction) {
-    Room room;
+SideRoom room_at(const Glyph& glyph, std::size_t stroke, const Vec2& p, const Vec2& direction) {
+    SideRoom room;
     for (std::size_t k = 0; k < glyph.strokes.size(); ++k) {
         if (k == stroke) continue;
         Vec2 nearest{0};
@@ -74,7 +74,7 @@ std::vector<double> stroke_features(const StrokeLine& line, const Glyph& glyph, 
                           head / kFarNeighbour,
                           tail / kFarNeighbour};
     for (const double part : {0.02, 0.25, 0.5, 0.75, 0.98}) {
-        const Room r = room_at(glyph, stroke, line.at(part * length), line.direction(part * length));
+        const SideRoom r = room_at(glyph, stroke, line.at(part * length), line.direction(part * length));
         f.push_back(r.left / kFarNeighbour);
         f.push_back(r.right / kFarNeighbour);
     }
