@@ -395,6 +395,39 @@ TEST(WideOutline, HairBetweenSplayedSpinesMeetsMidway) {
     }
 }
 
+/// Strips whose hair leans to one side of them, as turned sections have it, begin to spread without a step: their
+/// corners go on from where they are.
+TEST(WideOutline, LeaningHairBeginsToSpreadWithoutAStep) {
+    constexpr double kHalf = 1.6e-3, kThick = 0.8e-3, kTurn = 0.3;
+    const auto reach = [&](double apart) {
+        Recycled<Trail> trails{lying_trail(0, {0, 0}, kHalf, kThick), lying_trail(1, {0, apart}, kHalf, kThick)};
+        for (Trail& trail : trails)
+            for (Cut& cut : trail.cuts) {
+                // Its broad side along y: the ellipse's axes are turned from it.
+                cut.turn = {std::cos(kTurn), -std::sin(kTurn)};
+                const double y = std::atan2(kThick * std::sin(kTurn), kHalf * std::cos(kTurn));
+                cut.e = {0, std::cos(y), std::sin(y)}, cut.m = {0, -std::sin(y), std::cos(y)};
+                cut.z = -2e-3;
+            }
+        trails[0].openings.push_back({1, {0.0, 0.0}});
+        fill_rows(trails);
+        double least = 1e9;  // of the outer corners of the first
+        for (const Outline& o : outlines_of({&trails[0], 1}, 20, {}))
+            for (const Vec2& p : curve_points(o, 8)) least = std::min(least, p.y);
+        return least;
+    };
+    double before = reach(2.5e-3), step = 0, moved = 0;
+    for (double apart = 2.5e-3; apart < 4.5e-3; apart += 2e-6) {
+        const double now = reach(apart);
+        step = std::max(step, std::abs(now - before));
+        moved = std::max(moved, std::abs(now - reach(2.5e-3)));
+        before = now;
+    }
+    EXPECT_GT(moved, 0.1e-3) << "it stands up";
+    // Over 0.3 of its width, 0.8 mm, at the smooth step's 1.5: 0.2 mm stand up by 1 µm a step.
+    EXPECT_LT(step, 5e-6);
+}
+
 /// Five strips of a row that stands at 45° to its hair and splays, whose sections have turned about it by `turn`.
 Recycled<Trail> aslant_row(double apart, double turn) {
     constexpr double kHalf = 1e-3, kThick = 2e-4;

@@ -93,8 +93,9 @@ void spread_section(Cut& cut, const Halves& halves) {
     const auto& [next, last, row, widens] = halves;
     if (next.part <= 0 && last.part <= 0) return;
     const Vec3 thick = cut.thick(), hair = hair_of(cut);
+    const double part = std::max(next.part, last.part);
     // Sections turn by half a turn where the tuft bends to the other side.
-    const double way = way_along(row, cut.broad(), std::max(next.part, last.part));
+    const double way = way_along(row, cut.broad(), part);
     const Vec3 own = way * cut.broad();
     const Vec3 up = glm::mix(own, next.to, next.part), down = glm::mix(-own, last.to, last.part);
     const Vec3 broad = (way < 0 ? -0.5 : 0.5) * (up - down);
@@ -103,8 +104,10 @@ void spread_section(Cut& cut, const Halves& halves) {
     const double size = glm::length(across);
     if (!(size > 1e-9)) return;
     const double area = glm::length(glm::cross(cut.broad(), thick));
+    // The hair of a turned section leans to one side of its strip; spread hair stands up.
+    const double leans = glm::dot(thick, cut.broad()) / std::max(glm::dot(cut.broad(), cut.broad()), 1e-18);
     cut.centre += 0.5 * Trail::kStripChord * Vec2(up + down);
-    set_axes(cut, broad, area / (width * size) * across, widens);
+    set_axes(cut, broad, area / (width * size) * across + (1 - part) * leans * broad, widens);
 }
 
 }  // namespace
