@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/simd.h"
+
 namespace tuft::brush::rod {
 
 namespace {
@@ -53,6 +55,36 @@ Fibre fibre(const Rod& rod, int j, int f) {
     return {3 * rod.plastic_share * rod.stiffness[j] * q.x[f] * q.x[f] * q.w[f], rod.yield[j] / q.x[f]};
 }
 
+/// Constants of all fibres of a joint, see `fibre`.
+struct FibreLaw {
+    double stiffness, yield;  ///< of the joint: three times its plastic part
+    const double *place, *weight;
+};
+
+/// Energy, moment and stiffness of each fibre; `xy` with the other sign.
+struct FibreTerms {
+    double energy[kFibres], x[kFibres], y[kFibres], xx[kFibres], xy[kFibres], yy[kFibres];
+};
+
+/// Of elements at the strain (x, y) that yield at their limits.
+TUFT_CLONES void compute_fibres(const FibreLaw& law, const double* __restrict x, const double* __restrict y,
+                                FibreTerms& __restrict out) {
+    const double* __restrict place = law.place, * __restrict weight = law.weight;
+    const double stiffness = law.stiffness, yield = law.yield;
+    for (int f = 0; f < kFibres; ++f) {
+        const double k = stiffness * place[f] * place[f] * weight[f], limit = yield / place[f];
+        const double size = __builtin_sqrt(x[f] * x[f] + y[f] * y[f]);
+        const double dx = x[f] / size, dy = y[f] / size, most = k * limit, round = most / size;
+        const bool holds = size <= limit;
+        out.energy[f] = holds ? 0.5 * k * size * size : most * (size - 0.5 * limit);
+        out.x[f] = holds ? k * x[f] : most * dx;
+        out.y[f] = holds ? k * y[f] : most * dy;
+        out.xx[f] = holds ? k : round * dy * dy;
+        out.xy[f] = holds ? 0 : round * dx * dy;
+        out.yy[f] = holds ? k : round * dx * dx;
+    }
+}
+
 void add_full_bend(double k, const Vec2& w, JointForce& out) {
     const double angle = glm::length(w), over = angle - kFullBend;
     if (over <= 0) return;
@@ -100,24 +132,21 @@ JointForce joint_force(const Rod& rod, int j, const JointMemory& memory, const V
         out.energy = 0.5 * k_rest * glm::dot(w, w);
         out.moment = k_rest * w;
         out.d00 = out.d11 = k_rest;
+        const Quadrature& q = fibres();
+        double x[kFibres], y[kFibres];
         for (int f = 0; f < kFibres; ++f) {
-            const Fibre fb = fibre(rod, j, f);
             const Vec2 s = memory.yielded ? memory.stop[f] + (w - memory.bend) : w;
-            const double size = glm::length(s);
-            if (size <= fb.limit) {
-                out.energy += 0.5 * fb.stiffness * size * size;
-                out.moment += fb.stiffness * s;
-                out.d00 += fb.stiffness;
-                out.d11 += fb.stiffness;
-            } else {
-                const Vec2 d = s / size;
-                const double round = fb.stiffness * fb.limit / size;
-                out.energy += fb.stiffness * fb.limit * (size - 0.5 * fb.limit);
-                out.moment += fb.stiffness * fb.limit * d;
-                out.d00 += round * d.y * d.y;
-                out.d01 -= round * d.x * d.y;
-                out.d11 += round * d.x * d.x;
-            }
+            x[f] = s.x;
+            y[f] = s.y;
+        }
+        FibreTerms terms;
+        compute_fibres({3 * rod.plastic_share * k, rod.yield[j], q.x.data(), q.w.data()}, x, y, terms);
+        for (int f = 0; f < kFibres; ++f) {
+            out.energy += terms.energy[f];
+            out.moment += Vec2{terms.x[f], terms.y[f]};
+            out.d00 += terms.xx[f];
+            out.d01 -= terms.xy[f];
+            out.d11 += terms.yy[f];
         }
     }
     add_full_bend(k, w, out);
