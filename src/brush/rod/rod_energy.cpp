@@ -159,15 +159,20 @@ double commit_joint(const Rod& rod, int j, JointMemory& memory, const Vec2& w) {
         memory.bend = w;
         return lost;
     }
+    double size_of[kFibres];
+    for (int f = 0; f < kFibres; ++f) {
+        Vec2& s = memory.stop[f];
+        s = memory.yielded ? s + (w - memory.bend) : w;
+        size_of[f] = glm::length(s);
+    }
     for (int f = 0; f < kFibres; ++f) {
         const Fibre fb = fibre(rod, j, f);
-        Vec2 s = memory.yielded ? memory.stop[f] + (w - memory.bend) : w;
-        const double size = glm::length(s);
+        Vec2& s = memory.stop[f];
+        const double size = size_of[f];
         if (size > fb.limit) {
             lost += fb.stiffness * fb.limit * (size - fb.limit);
             s *= fb.limit / size;
         }
-        memory.stop[f] = s;
     }
     memory.yielded = true;
     memory.bend = w;
@@ -178,6 +183,7 @@ double recover_joint(const Rod& rod, int j, JointMemory& memory, double time) {
     constexpr double kElastic = 1, kRigid = 12;
     if (!memory.yielded || time <= 0) return 0;
     double lost = 0, left = 0;
+    double x_before = 0, keep = 1;  // e^{−x time}: most elements have the same x
     for (int f = 0; f < kFibres; ++f) {
         const Fibre fb = fibre(rod, j, f);
         Vec2& s = memory.stop[f];
@@ -185,14 +191,16 @@ double recover_joint(const Rod& rod, int j, JointMemory& memory, double time) {
         if (glm::dot(s, set) < 0) {
             const double far = glm::length(set) / fb.limit;
             const double x = std::clamp((kRigid - far) / (kRigid - kElastic), 0.0, 1.0);
-            const double keep = std::exp(-x * time);
+            if (x != x_before) keep = std::exp(-x * time);
+            x_before = x;
             lost += 0.5 * fb.stiffness * (1 - keep * keep) * glm::dot(s, s);
             s *= keep;
         }
-        left = std::max(left, glm::length(memory.bend - s));
+        const Vec2 after = memory.bend - s;
+        left = std::max(left, glm::dot(after, after));
     }
     // What is left is less than any shape shows: the joint is as new.
-    if (left < 1e-9) memory.yielded = false;
+    if (std::sqrt(left) < 1e-9) memory.yielded = false;
     return lost;
 }
 
