@@ -88,6 +88,29 @@ TEST(Repair, ClosesHairlineCracksOfLooseTriangles) {
     EXPECT_EQ(s.mesh.n_triangles(), 1600u);
 }
 
+// sin π is 1.2e-16 in the spheres of many programs: their pole is a ring of points, in which it must not stay open.
+TEST(Repair, ClosesAPoleThatIsARingOfPointsBesideEachOther) {
+    constexpr std::uint32_t kRound = 24, kRings = 12;
+    PolygonSoup sphere;
+    for (std::uint32_t i = 0; i <= kRings; ++i)
+        for (std::uint32_t j = 0; j < kRound; ++j) {
+            const double polar = M_PI * i / kRings, azimuth = 2 * M_PI * j / kRound;
+            sphere.points.emplace_back(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
+                                       std::cos(polar));
+        }
+    sphere.polygon_start = {0};
+    for (std::uint32_t i = 0; i < kRings; ++i)
+        for (std::uint32_t j = 0; j < kRound; ++j) {
+            const std::uint32_t a = i * kRound + j, b = i * kRound + (j + 1) % kRound;
+            for (const std::uint32_t c : {a, a + kRound, b + kRound, b}) sphere.corners.push_back(c);
+            sphere.polygon_start.push_back(static_cast<std::uint32_t>(sphere.corners.size()));
+        }
+    const Surface s = repaired(sphere);
+    EXPECT_TRUE(s.report.closed);
+    EXPECT_EQ(s.mesh.n_vertices(), (kRings - 1) * kRound + 2);
+    EXPECT_EQ(s.mesh.n_triangles(), 2 * (kRings - 1) * kRound);
+}
+
 TEST(Repair, LeavesCloseSheetsApart) {
     PolygonSoup plates = make_box(Vec3(0), Vec3(100, 100, 1e-3));
     add_box(plates, Vec3(0, 0, 1.5e-3), Vec3(100, 100, 1e-3));

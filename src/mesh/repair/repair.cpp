@@ -16,6 +16,7 @@ namespace {
 
 /// Points further apart than this part of the model's diagonal stay apart.
 constexpr double kWeldTolerance = 1e-6;
+constexpr double kShortestEdge = 1e-8;  // of the size: a sixth of the rounding of coordinates as large as the model
 
 void check_soup(const PolygonSoup& soup) {
     const bool sound = (soup.polygon_start.empty()
@@ -68,6 +69,7 @@ class Repair {
     RepairReport report_;
     RawMesh mesh_;                                           ///< its groups are parts where the soup has parts
     std::vector<std::uint32_t> part_faces_, group_of_part_;  ///< by part, or by group
+    double size_ = 0;                                        ///< diagonal of the bounds, metres
     PairingReport pairs_;                                    ///< the last pairing
     std::vector<std::uint32_t> ring_;                        ///< scratch: corners of one polygon
     std::vector<Vec3> ring_points_;
@@ -95,6 +97,7 @@ void Repair::take_points() {
         largest = std::max(largest, reach);
     }
     if (!soup_.points.empty()) check_size(bounds);
+    size_ = bounds.diagonal();
     soup_.points = {};
     mesh_.colours = std::move(soup_.point_colours);
     // Float coordinates keep 1e-5 of the size out to this distance from the origin.
@@ -146,7 +149,9 @@ void Repair::report_lost_parts(const TriangleMesh& mesh) {
 void Repair::weld() {
     std::vector<bool> used(mesh_.positions.size(), false);
     for (const std::uint32_t c : soup_.corners) used[c] = true;
-    const std::vector<std::uint32_t> target = weld_exact(mesh_.positions);
+    std::vector<std::uint32_t> target = weld_exact(mesh_.positions);
+    if (!report_.file.loose_triangles)  // whose cracks are closed later
+        weld_short_edges(mesh_.positions, soup_.corners, soup_.polygon_start, kShortestEdge * size_, target);
     for (std::size_t i = 0; i < target.size(); ++i) {
         if (!used[i]) ++report_.unused_vertices_dropped;
         if (used[i] && target[i] != i) ++report_.vertices_welded;

@@ -63,6 +63,23 @@ std::vector<std::uint32_t> weld_exact(std::span<const Vec3f> points) {
     return target;
 }
 
+void weld_short_edges(std::span<const Vec3f> points, std::span<const std::uint32_t> corners,
+                      std::span<const std::uint32_t> polygon_start, double shortest,
+                      std::vector<std::uint32_t>& target) {
+    const auto root = [&](std::uint32_t v) {
+        while (target[v] != v) v = target[v] = target[target[v]];
+        return v;
+    };
+    for (std::size_t p = 0; p + 1 < polygon_start.size(); ++p)
+        for (std::uint32_t c = polygon_start[p], last = polygon_start[p + 1]; c < last; ++c) {
+            const std::uint32_t a = corners[c], b = corners[c + 1 < last ? c + 1 : polygon_start[p]];
+            if (a == b || !(glm::length(Vec3(points[a]) - Vec3(points[b])) <= shortest)) continue;
+            const std::uint32_t of_a = root(a), of_b = root(b);
+            target[std::max(of_a, of_b)] = std::min(of_a, of_b);
+        }
+    for (std::uint32_t v = 0; v < target.size(); ++v) target[v] = root(v);
+}
+
 void weld_near(std::span<const Vec3f> points, std::span<const std::uint32_t> candidates, double tolerance,
                std::vector<std::uint32_t>& target) {
     if (!(tolerance > 0)) return;
