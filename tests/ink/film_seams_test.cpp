@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "core/random.h"
@@ -68,19 +70,22 @@ BlotError error_of(const Wet& s, Truth&& truth) {
 }
 
 /// Each half against a sheet without a seam, whose texels lie where the half has its own: what differs is the seam
-/// alone. `paint` puts the ink on a sheet of given charts.
-template <class Paint>
-BlotError error_of_seam(const Lie& left, const Lie& right, const Paint& paint) {
-    const Wet cut = paint(two_charts(left, right));
-    const Wet whole[] = {paint(one_chart(left)), paint(one_chart(right))};
+/// alone.
+BlotError error_of_seam(const Lie& left, const Lie& right, const Wet& cut, const Wet& whole_left,
+                        const Wet& whole_right) {
     return error_of(cut, [&](const Vec3& at) {
         const Lie& lie = at.x > 0 ? right : left;
         const Vec2 uv = lie.at + lie.across((at.x + 8e-3) * 1e4) + lie.up((at.y + 8e-3) * 1e4);
-        const Wet& s = whole[at.x > 0];
+        const Wet& s = at.x > 0 ? whole_right : whole_left;
         const atlas::TexelRef ref =
             atlas::texel_ref(s.map, static_cast<std::int64_t>(uv.x), static_cast<std::int64_t>(uv.y));
         return ref.valid() ? s.amount(ref.slot, ref.texel) : 0;
     });
+}
+/// The same. `paint` puts the ink on a sheet of given charts.
+template <class Paint>
+BlotError error_of_seam(const Lie& left, const Lie& right, const Paint& paint) {
+    return error_of_seam(left, right, paint(two_charts(left, right)), paint(one_chart(left)), paint(one_chart(right)));
 }
 BlotError error_of_seam(const Lie& left, const Lie& right, double shortest_step = 0) {
     return error_of_seam(left, right, [&](const auto& charts) { return blot_on(charts, shortest_step); });
@@ -95,8 +100,14 @@ TEST(WetFilm, ABlotIsTheSameWithASeamUnderIt) {
     // The right half straight on or turned by a quarter, at several fractions of a texel.
     const double quarter = std::numbers::pi / 2, degree = quarter / 90;
     const Lie left{{8.21, 8.13}, 0};
-    const auto expect_same = [](const Lie& a, const Lie& b) {
-        const BlotError e = error_of_seam(a, b);
+    std::map<std::array<double, 3>, Wet> known;  // sheets without a seam: many halves lie alike
+    const auto whole = [&](const Lie& lie) -> const Wet& {
+        const std::array key{lie.at.x, lie.at.y, lie.angle};
+        const auto found = known.find(key);
+        return found != known.end() ? found->second : known.emplace(key, blot_on(one_chart(lie))).first->second;
+    };
+    const auto expect_same = [&](const Lie& a, const Lie& b) {
+        const BlotError e = error_of_seam(a, b, blot_on(two_charts(a, b)), whole(a), whole(b));
         EXPECT_LT(e.worst, kAtFront) << a.angle << ' ' << b.angle;
         EXPECT_LT(e.rms, 3.5e-4);
     };
@@ -171,8 +182,8 @@ TEST(WetFilm, LongStepsKeepEveryPigmentAndAllWaterAndAreTheSameOnAnyNumberOfThre
     std::uint64_t hashes[2];
     for (int i = 0; i < 2; ++i) {
         set_thread_count(i ? 4 : 1);
-        Stroke s(FilmParams{}.shortest_step, 2, 40);
-        EXPECT_LE(s.report.steps, 2000u) << "20 ms and longer";
+        Stroke s(FilmParams{}.shortest_step, 2, 16);
+        EXPECT_LE(s.report.steps, 800u) << "20 ms and longer";
         EXPECT_NEAR((s.wet.canvas.total_liquid(s.wet.map) + s.report.evaporated) / s.water, 1, 1e-5);
         EXPECT_NEAR(s.wet.canvas.total(s.wet.map, 0) / s.ink, 1, 1e-5);
         hashes[i] = s.wet.canvas.hash();
@@ -193,11 +204,12 @@ TEST(WetFilm, WhereFlowsAreHeldBackASeamDoesNotHoldThemBackMore) {
 }
 
 TEST(WetFilm, ABlotIsTheSameOverRandomSeams) {
-    // At the steps in use, where flows are hardly held back, and twice as long.
+    // At the steps in use, where flows are hardly held back, and, for a third of the seams, twice as long.
     const double degree = std::numbers::pi / 180;
     for (const double shortest : {FilmParams{}.shortest_step, 2 * FilmParams{}.shortest_step}) {
         int n = 0, within = 0;
-        for (const std::uint64_t seed : {1, 2, 3})
+        const std::uint64_t seeds = shortest > FilmParams{}.shortest_step ? 1 : 3;
+        for (std::uint64_t seed = 1; seed <= seeds; ++seed)
             for (std::uint64_t i = 0; i < 8; ++i, ++n) {
                 const auto at = [&](std::uint64_t k) { return uniform(seed, 10 * i + k); };
                 const Lie left{{140.3 + at(0), 8.4 + at(1)}, 45 * at(2) * degree},

@@ -43,7 +43,7 @@ BrushAction brush_action(BrushActionKind kind, const std::string& ink, const Ext
 }
 
 TEST(Conservation, AThousandStrokesKeepEachPigment) {
-    const Model model = sheet();
+    const Model model = sheet({}, 512);  // texels of 0.12 mm; a footprint covers hundreds
     Document painting(model, {.substrate = "bisque", .undo_bytes = 1});
     std::array<double, kPigments> supplied{};
     const auto in_hair = [&](int p) {
