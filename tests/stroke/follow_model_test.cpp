@@ -270,6 +270,7 @@ Model model_of(const mesh::TriangleMesh& m) {
     soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
     ModelOptions options;
     options.unwrap.size = 1024;
+    options.cache = shared_model_cache();
     return prepare_model(soup, options);
 }
 

@@ -19,6 +19,7 @@ Model shipped(const std::string& name, std::uint32_t size) {
     const std::string file = source_folder() + "/models/" + name;
     ModelOptions options;
     options.unwrap.size = size;
+    options.cache = shared_model_cache();  // for the tests that paint on the same model
     return prepare_model(mesh::read_polygon_file(file), options);
 }
 

@@ -206,6 +206,7 @@ class CarArch : public testing::Test {
     static Model prepared() {
         ModelOptions options;
         options.unwrap.size = 2048;
+        options.cache = shared_model_cache();
         return prepare_model(mesh::read_polygon_file(source_folder() + "/models/car.ply"), options);
     }
     const Model car_ = prepared();
