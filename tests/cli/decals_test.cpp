@@ -178,15 +178,15 @@ TEST_F(ReadBack, KeepsTheHandsPace) {
     }
     strokes << "</ink>";
     strokes.close();
-    for (const std::string on : {"sphere.ply", "bowl.ply", "sheet.ply"})
-        for (const std::string brush : {"wolf-medium", "flat-12"}) {
-            const std::string project = path("hand.tuft");
-            fs::remove(project);
-            const test::Ran ran = tuft("paint " + model(on) + " --strokes " + path("two.inkml") + " --brush " + brush +
-                                       " --smooth 1 --atlas-size 1024 --quiet --project " + project);
-            ASSERT_EQ(ran.status, 0) << ran.err;
-            EXPECT_GE(overlap(project, on, "csv", "--max-acceleration 200"), 0.99) << on << ' ' << brush;
-        }
+    for (const auto& [on, brush] :
+         {std::pair{"sphere.ply", "wolf-medium"}, {"bowl.ply", "flat-12"}, {"sheet.ply", "wolf-medium"}}) {
+        const std::string project = path("hand.tuft");
+        fs::remove(project);
+        const test::Ran ran = tuft("paint " + model(on) + " --strokes " + path("two.inkml") + " --brush " + brush +
+                                   " --smooth 1 --atlas-size 1024 --quiet --project " + project);
+        ASSERT_EQ(ran.status, 0) << ran.err;
+        EXPECT_GE(overlap(project, on, "csv", "--max-acceleration 200"), 0.99) << on << ' ' << brush;
+    }
 }
 
 TEST_F(Trajectories, AreWrittenInEachLanguageAndRefusedWhereTheHolderHits) {

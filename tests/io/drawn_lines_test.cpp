@@ -159,6 +159,7 @@ class DrawnLines : public testing::Test {
         if (!known.contains(name)) {
             stroke::ModelOptions options;
             options.unwrap.size = 4096;
+            options.cache = stroke::shared_model_cache();
             known.emplace(name,
                           stroke::prepare_model(mesh::read_polygon_file(source_folder() + "/models/" + name), options));
         }
