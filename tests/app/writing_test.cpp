@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "app/document/first_scale.h"
 #include "app/document/snapping.h"
 #include "both_programs.h"
 
@@ -71,6 +72,22 @@ TEST(Writing, SnapsToSymmetryAndLevelWithOtherDrawings) {
     EXPECT_NEAR(snap(query, c + Vec3(0.001, 0.0045, 0), mirrored, kReach)->at.position.y, c.y + 0.005, kExact);
 }
 
+TEST(Writing, ComesAtItsOwnSizeUnlessNoSideOfTheModelHasRoomForItOrItIsASpeck) {
+    const Box bowl{{-0.075, -0.075, 0}, {0.075, 0.075, 0.067}};
+    const auto comes = [&](double width, double height) {
+        Writing w;
+        w.width = width;
+        w.height = height;
+        return width * first_scale(w, bowl);
+    };
+    constexpr double kRounding = 1e-15;  // metres
+    EXPECT_EQ(comes(0.149, 0.02), 0.149);
+    EXPECT_NEAR(comes(0.206, 0.11), bowl.diagonal() / 3, kRounding);
+    EXPECT_NEAR(comes(0.1, 0.2) * 2, bowl.diagonal() / 3, kRounding);
+    EXPECT_NEAR(comes(0.004, 0.004), bowl.diagonal() / 3, kRounding);
+    EXPECT_EQ(comes(0.005, 0.005), 0.005);
+}
+
 TEST(Writing, CharactersWithPlacesOfTheirOwnStandSideBySide) {
     const Writing w = read_writing(source_folder() + "/samples/strokes/man-bu-ren-sheng.inkml");
     EXPECT_GT(w.width, 3 * w.height);
@@ -102,6 +119,17 @@ class WritingOnModel : public BothPrograms {
     Painted by_program(const std::string& name, const Writing& w, const std::string& words, const std::string& more) {
         return BothPrograms::by_program("paint", name, "--strokes " + w.file.string() + " " + words + " " + more);
     }
+
+    /// A filled half disc, a curve and a line, 150 mm wide: what a drawing is made of, in few strokes.
+    Writing badge(double width) const {
+        const std::string file = folder_ + "/badge.svg";
+        std::ofstream(file) << "<svg xmlns='http://www.w3.org/2000/svg' width='150mm' viewBox='0 0 30 24'><path "
+                               "d='M4 4 A9 9 0 0 0 4 20 Z'/><g fill='none' stroke='black' stroke-width='1'><path "
+                               "d='M10 3 C20 3 26 9 26 19'/><path d='M10 12 l12 9'/></g></svg>";
+        Writing w = read_writing(file);
+        w.scale = width / w.width;
+        return w;
+    }
 };
 
 Writing roundel(double width) {
@@ -121,7 +149,7 @@ TEST_F(WritingOnModel, TheStudioPaintsARoundelOnTheBowlAsTheProgramDoes) {
 }
 
 TEST_F(WritingOnModel, MirroredTurnedAndSmallInAPlateItIsTheSame) {
-    Writing w = roundel(0.025);  // a sixth of its own size, below which times once stayed as they were
+    Writing w = badge(0.024);  // less than a sixth of its own size: its strokes' times are scaled too
     w.mirrored = true;
     w.turn = 0.7;
     const Painted studio =
@@ -131,9 +159,10 @@ TEST_F(WritingOnModel, MirroredTurnedAndSmallInAPlateItIsTheSame) {
 }
 
 TEST_F(WritingOnModel, OnACarsDoorItIsTheSame) {
-    const Writing w = roundel(0.300);
+    const Writing w = badge(0.300);
     const Painted studio = by_studio("car.ply", w, {0, -3, 0.118}, {0, 1, 0}, {1, 0, 0}, kHand);
     expect_same(studio, by_program("car.ply", w, studio.words, ""));
+    EXPECT_GT(studio.journal.size(), 2u) << "the area is painted too";
 }
 
 TEST_F(WritingOnModel, HandwritingWithBrushesAndPlacesOfItsOwnIsTheSame) {
@@ -156,7 +185,7 @@ TEST_F(WritingOnModel, OneThatNoTuftCanPaintIsRefusedBeforeItsFirstStroke) {
 }
 
 TEST_F(WritingOnModel, StraightThroughThePictureItIsTheSame) {
-    Writing w = roundel(0.05);
+    Writing w = badge(0.05);
     w.mapping = stroke::SurfaceMapping::project;
     w.turn = -0.2;
     // The eye is above the rim and to the left; its picture leans a little.

@@ -173,6 +173,26 @@ struct SideView {
     }
 };
 
+// Two points across the tuft, and the colour there.
+struct Cut {
+    ImVec2 left, right;
+    unsigned colour = 0;
+};
+
+// From one cut to the next, the colour blended between them; its sides are drawn as lines, which have smooth edges.
+void draw_between(ImDrawList& draw, const Cut& from, const Cut& to) {
+    const ImVec2 white = ImGui::GetFontTexUvWhitePixel();
+    draw.PrimReserve(6, 4);
+    const auto first = static_cast<ImDrawIdx>(draw._VtxCurrentIdx);
+    for (const int corner : {0, 1, 2, 0, 2, 3}) draw.PrimWriteIdx(static_cast<ImDrawIdx>(first + corner));
+    draw.PrimWriteVtx(from.left, white, from.colour);
+    draw.PrimWriteVtx(to.left, white, to.colour);
+    draw.PrimWriteVtx(to.right, white, to.colour);
+    draw.PrimWriteVtx(from.right, white, from.colour);
+    draw.AddLine(from.left, to.left, to.colour);
+    draw.AddLine(from.right, to.right, to.colour);
+}
+
 void draw_side(const Session& s, ImVec2 at, ImVec2 size) {
     const brush::Branch& branch = s.view.tuft.state.branches.front();
     const brush::Section &root = branch.sections.back(), &tip = branch.sections.front();
@@ -199,16 +219,17 @@ void draw_side(const Session& s, ImVec2 at, ImVec2 size) {
     const auto encoded = [](float linear) { return ink::srgb_encode(linear); };
     for (const brush::Branch& b : s.view.tuft.state.branches)
         for (std::size_t i = 1; i < b.sections.size(); ++i) {
-            const auto edge = [&](const brush::Section& c, double side) {
+            const auto cut = [&](std::size_t k) {
+                const brush::Section& c = b.sections[k];
                 const Vec3 across = glm::cross(c.tangent, glm::cross(v.up, v.along));
                 const double r = std::hypot(c.a * glm::dot(c.e, across), c.b * glm::dot(c.m, across));
-                return v.at(c.centre + side * r * across);
+                const Vec3f hair = hair_colour(static_cast<double>(k) / static_cast<double>(b.sections.size()), ink);
+                return Cut{
+                    v.at(c.centre + r * across), v.at(c.centre - r * across),
+                    ImGui::ColorConvertFloat4ToU32(ImVec4(encoded(hair[0]), encoded(hair[1]), encoded(hair[2]), 1))};
             };
             const brush::Section &p = b.sections[i - 1], &q = b.sections[i];
-            const Vec3f hair = hair_colour(static_cast<double>(i) / static_cast<double>(b.sections.size()), ink);
-            draw->AddQuadFilled(
-                edge(p, 1), edge(q, 1), edge(q, -1), edge(p, -1),
-                ImGui::ColorConvertFloat4ToU32(ImVec4(encoded(hair[0]), encoded(hair[1]), encoded(hair[2]), 1)));
+            draw_between(*draw, cut(i - 1), cut(i));
             if (p.pressure > 0 && q.pressure > 0)
                 draw->AddLine(v.at(p.centre), v.at(q.centre), s.ui.accent, s.ui.px(2.5f));
         }

@@ -125,7 +125,12 @@ namespace {
 void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
     if (tools.active != Tool::writing) return;
     Writing& w = tools.writing;
-    const float all = ImGui::GetContentRegionAvail().x, inside = all - 2 * ImGui::GetStyle().FramePadding.x;
+    const ImGuiStyle& style = ImGui::GetStyle();
+    // In millimetres beside the file: a row of three switches is wider than the panel.
+    const float beside = w.empty() ? 0
+                                   : style.ItemSpacing.x + ImGui::GetFrameHeight() + style.ItemInnerSpacing.x +
+                                         ImGui::CalcTextSize(ui.tr("mm")).x;
+    const float all = ImGui::GetContentRegionAvail().x - beside, inside = all - 2 * style.FramePadding.x;
     // The button is named by what is in hand.
     const std::string name = w.file.filename().string();
     const std::string title = w.empty() ? ui.tr("Writing or drawing...") : ui.fitted(name, inside);
@@ -134,12 +139,12 @@ void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
     ui.mark("Writing or drawing...");
     ui.hint(w.empty() ? "InkML or SVG" : "Another one, InkML or SVG");
     if (w.empty()) return;
+    ImGui::SameLine();
+    ui.toggle("mm", tools.shows_place, "Place in millimetres");
     for (const Message& note : w.notes) ui.note(ui.sentence(note));
     ui.toggle("Mirrored", w.mirrored);
     ImGui::SameLine();
     ui.toggle("Snap", tools.snap, "To the plane of symmetry and level with other drawings; Ctrl places it freely");
-    ImGui::SameLine();
-    ui.toggle("mm", tools.shows_place, "Place in millimetres");
     if (tools.shows_place) place_fields(ui, tools);
     const bool names =
         std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/document/first_scale.h"
 #include "core/files/files.h"
 #include "core/files/toml_text.h"
 
@@ -22,10 +23,7 @@ void open_writing(Session& s, const fs::path& path) {
         if (const auto& lost = s.tools.writing.notes; !lost.empty())
             show_message(s.status, Message("{}: {}", path.filename().string(), join(lost)));
         s.tools.active = Tool::writing;
-        const double size = s.paint_thread->model().mesh->bounds.diagonal();
-        // A drawing far too large or small for the model comes at a third of it.
-        const double own = std::max(s.tools.writing.width, s.tools.writing.height);
-        if (own > 0 && (own > size || own < 0.02 * size)) s.tools.writing.scale = 0.33 * size / own;
+        s.tools.writing.scale = first_scale(s.tools.writing, s.paint_thread->model().mesh->bounds);
     } catch (const Error& error) {
         show_message(s.status, error.message());
     }
