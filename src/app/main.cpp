@@ -134,10 +134,13 @@ void loop(app::Display& display, const Options& options) {
         studio.set_content_scale(display.scale());  // another one on another monitor
         const double now = display.now();
         if (script) script->before_frame(studio, events, now);
-        studio.frame(events, display.width(), display.height(), display.framebuffer(), now);
-        if (script) script->after_frame(studio, display.width(), display.height());
-        display.present();
-        studio.shown(display.now());
+        const bool seen = display.seen() || !script || script->looks();
+        studio.frame(events, {display.width(), display.height(), display.framebuffer(), seen}, now);
+        if (script) script->after_frame(studio, display.width(), display.height(), seen);
+        if (seen) {
+            display.present();
+            studio.shown(display.now());
+        }
         const std::string name = app::project_name(session.paint_thread.get(), session.reported.file.project) +
                                  (session.reported.file.viewing ? " (a view)" : "");
         if (const std::string wanted = name.empty() ? "tuft studio" : name + " \xe2\x80\x93 tuft studio";

@@ -6,9 +6,10 @@
 
 namespace tuft::test {
 
-/// A shipped model, unwrapped into `size` texels per side.
+/// A shipped model, unwrapped into `size` texels per side; from the cache that the programs use where it is there.
 inline stroke::Model shipped_model(const std::string& name, std::uint32_t size) {
     stroke::ModelOptions options;
+    options.cache = stroke::shared_model_cache();
     options.unwrap.size = size;
     return stroke::prepare_model(io::read_model(source_folder() + "/models/" + name), options);
 }

@@ -16,6 +16,7 @@
 #include "io/project/restore.h"
 #include "models.h"
 #include "paths.h"
+#include "studio_program.h"
 
 /// Other programs that change the project while it is open: nothing is lost on either side.
 namespace tuft::app {
@@ -206,7 +207,7 @@ class TwoPrograms : public testing::Test {
             "/samples/strokes/stroke-sheet.inkml' --atlas-size 256 --quiet --project place/work.tuft");
         ASSERT_EQ(made.status, 0) << made.err;
         strokes_ = io::Project::open(folder_ / "place/work.tuft").n_strokes();
-        if (studio("quit\n", "probe").err.find("no OpenGL") != std::string::npos) GTEST_SKIP();
+        if (const std::string lack = lack_of_opengl(); !lack.empty()) GTEST_SKIP() << lack;
     }
     void TearDown() override { fs::remove_all(folder_); }
 

@@ -13,26 +13,27 @@ class StudioBrushes : public StudioProgram {
     static bool shows(const std::string& out, const std::string& label) { return places(out).contains(label); }
 };
 
-TEST_F(StudioBrushes, EachShippedOneHangsInTheRack) {
-    const Ran ran = studio(kBowl + "wait 0.2\nplaces\n", kWindow);
-    ASSERT_EQ(ran.status, 0) << ran.err;
-    for (const std::string& name : brush::list_presets()) EXPECT_TRUE(shows(ran.out, name)) << name;
-}
-
 // Letters of the name in the language of the interface, or of the name in files.
-TEST_F(StudioBrushes, AreFoundByNameInBothLanguages) {
-    for (const std::string& typed : {std::string("sponge"), std::string("set language chinese"), std::string("spo")}) {
-        const bool chinese = typed.starts_with("set");
-        const Ran ran = studio(kBowl + (chinese ? "set language chinese\nwait 0.3\n" : "") +
-                                   "click \"All brushes\"\nexpect label \"card goat-small\"\nclick \"Brush "
-                                   "filter\"\ntype " +
-                                   (chinese ? "\xe6\xb5\xb7\xe7\xbb\xb5" : typed) +
-                                   "\nwait 0.3\nplaces\nclick \"card sponge-30\"\n" +
-                                   "wait 0.2\nstroke 46%,58% 50%,61%\nwait-ready\nsave work.tuft\nwait-ready\n",
-                               kWindow);
-        ASSERT_EQ(ran.status, 0) << typed << ": " << ran.err;
-        EXPECT_TRUE(shows(ran.out, "card sponge-30")) << typed;
-        EXPECT_FALSE(shows(ran.out, "card goat-small")) << typed;
+TEST_F(StudioBrushes, EachShippedOneHangsInTheRackAndIsFoundByNameInBothLanguages) {
+    struct Search {
+        const char *language, *typed;
+    };
+    const std::vector<Search> searches{
+        {"english", "sponge"}, {"chinese", "\xe6\xb5\xb7\xe7\xbb\xb5"}, {"chinese", "spo"}};
+    std::string script = kBowl + "wait 0.2\nplaces\nreport\n";
+    for (const Search& s : searches)
+        script += "set language " + std::string(s.language) +
+                  "\nwait 0.3\nclick \"All brushes\"\nexpect label \"card goat-small\"\nclick \"Brush filter\"\ntype " +
+                  s.typed + "\nwait 0.3\nplaces\nreport\nclick \"card sponge-30\"\nclick \"Brush filter\"\nkey " +
+                  "ctrl+a\nkey delete\nclick \"All brushes\"\nwait 0.2\n";
+    const Ran ran = studio(script, kWindow);
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const auto turns = places_in_turn(ran.out);
+    ASSERT_EQ(turns.size(), 1 + searches.size());
+    for (const std::string& name : brush::list_presets()) EXPECT_TRUE(turns[0].contains(name)) << name;
+    for (std::size_t i = 0; i < searches.size(); ++i) {
+        EXPECT_TRUE(turns[i + 1].contains("card sponge-30")) << searches[i].typed;
+        EXPECT_FALSE(turns[i + 1].contains("card goat-small")) << searches[i].typed;
     }
 }
 

@@ -2,8 +2,8 @@
 
 #include <cstdlib>
 #include <map>
-#include <ostream>
 #include <set>
+#include <vector>
 
 #include "io/project/project.h"
 #include "studio_program.h"
@@ -28,74 +28,79 @@ TEST_F(Panels, EscPutsPanelsOverTheViewAwayOneByOneWhenThereIsNothingElseToLeave
     EXPECT_EQ(ran.out.find("\nPlate\n"), std::string::npos);
 }
 
-struct Setting {
-    const char* language;
-    double scale;
-};
-void PrintTo(const Setting& s, std::ostream* out) {
-    *out << s.language << " at " << s.scale;
-}
-
-class PanelsAt1280Times720 : public Panels, public testing::WithParamInterface<Setting> {};
-
 // With all that a stroke can be given: wet ink, another ink in the tip, a tool with settings of its own, a drawing.
-TEST_P(PanelsAt1280Times720, NothingNeededForPaintingScrolls) {
-    const Setting setting = GetParam();
+TEST_F(Panels, NothingNeededForPaintingScrollsAt1280Times720) {
     std::ofstream(path("two.svg")) << "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path fill='none' "
                                       "stroke='black' stroke-width='1' d='M1 1 l7 7'/></svg>";
-    std::string script = kBowl + "set language " + setting.language + "\nset scale " + std::to_string(setting.scale) +
-                         "\nset wet on\nset two-inks on\nset text \xe6\xb0\xb8\nopen " + path("two.svg") +
+    std::string script = kBowl + "set wet on\nset two-inks on\nset text \xe6\xb0\xb8\nopen " + path("two.svg") +
                          "\nwait-ready\nwait 0.2\n";
     const auto expect = [&](std::initializer_list<const char*> labels) {
         for (const char* label : labels) script += "expect label \"" + std::string(label) + "\"\n";
     };
-    for (const char* tool : {"brush", "line", "curve", "eraser", "writing", "text"}) {
-        const std::string name = tool;
-        script += "set tool " + name + "\nwait 0.2\n";
-        expect({"Brush", "Mask", "Palette", "goat-small", "wolf-large", "Tuft size", "Pressure", "Stabiliser"});
-        if (setting.scale == 1) expect({"fold Symmetry", "fold Look inside", "Undo", "Add a layer"});
-        if (name == "line" || name == "curve") expect({"Press down in", "Lift in", "Pace"});
-        if (name == "writing") expect({"Writing or drawing...", "Width", "Turn", "Drape", "Wrap", "Mirrored"});
-        if (name == "text")
-            expect({"Text", "Style", "Own brush", "Across", "Down", "Round", "Curve##direction", "Characters from...",
-                    "Snap", "Size", "Spacing", "Turn"});
-        if (name == "brush" || name == "eraser") expect({"Speed lightens", "Rest deepens", "Clean ends"});
-        if (name != "eraser")
-            expect({"carbon", "water", "Colour...", "Wet ink", "1 min", "Dry", "Don't reload", "Another ink in the tip",
-                    "Tip ink", "Tip"});
-    }
-    script += "set tool brush\nset persistent on\nwait 0.2\n";
-    expect({"Dip", "Wipe", "Rinse", "Comb", "How deep", "Which side", "Pressure"});
-    const Ran ran = studio(script + "places\n", "--headless --size 1280x720");
+    const std::string look = "places\nreport\n";
+    const auto expect_all = [&](double scale) {
+        for (const char* tool : {"brush", "line", "curve", "eraser", "writing", "text"}) {
+            const std::string name = tool;
+            script += "set tool " + name + "\nwait 0.2\n";
+            expect({"Brush", "Mask", "Palette", "goat-small", "wolf-large", "Tuft size", "Pressure", "Stabiliser"});
+            if (scale == 1) expect({"fold Symmetry", "fold Look inside", "Undo", "Add a layer"});
+            if (name == "line" || name == "curve") expect({"Press down in", "Lift in", "Pace"});
+            if (name == "writing") expect({"Writing or drawing...", "Width", "Turn", "Drape", "Wrap", "Mirrored"});
+            if (name == "writing" && scale == 1) script += look;
+            if (name == "text")
+                expect({"Text", "Style", "Own brush", "Across", "Down", "Round", "Curve##direction",
+                        "Characters from...", "Snap", "Size", "Spacing", "Turn"});
+            if (name == "brush" || name == "eraser") expect({"Speed lightens", "Rest deepens", "Clean ends"});
+            if (name != "eraser")
+                expect({"carbon", "water", "Colour...", "Wet ink", "1 min", "Dry", "Don't reload",
+                        "Another ink in the tip", "Tip ink", "Tip"});
+        }
+        script += "set tool brush\nset persistent on\nwait 0.2\n";
+        expect({"Dip", "Wipe", "Rinse", "Comb", "How deep", "Which side", "Pressure"});
+        if (scale == 1) script += look;
+        script += "set persistent off\n";
+    };
+    for (const char* language : {"english", "chinese"})
+        for (const double scale : {1.0, 1.25, 1.5}) {
+            script += "set language " + std::string(language) + "\nset scale " + std::to_string(scale) + "\n";
+            expect_all(scale);
+        }
+    const Ran ran = studio(script, "--headless --size 1280x720");
     EXPECT_EQ(ran.status, 0) << ran.err;
-    if (setting.scale > 1) return;
-    auto found = places(ran.out);
-    EXPECT_LT(found["fold Look inside"].second, 680) << "the status bar begins at 690: all of it is on the screen";
+    const auto turns = places_in_turn(ran.out);
+    ASSERT_EQ(turns.size(), 4u);
+    for (const std::size_t language : {0, 2}) {
+        EXPECT_LT(turns[language].at("mm").first, turns[language].at("Fold the tools").first - 40)
+            << "the handle is outside the panel: the switch, 60 pixels wide, lies inside";
+        EXPECT_LT(turns[language + 1].at("fold Look inside").second, 680)
+            << "the status bar begins at 690: all of it is on the screen";
+    }
 }
-INSTANTIATE_TEST_SUITE_P(, PanelsAt1280Times720,
-                         testing::Values(Setting{"english", 1}, Setting{"chinese", 1}, Setting{"english", 1.25},
-                                         Setting{"chinese", 1.25}, Setting{"english", 1.5}, Setting{"chinese", 1.5}));
 
 // The model stays where it is on the screen when another tool is taken: a handle is at the middle of the view's edge.
 TEST_F(Panels, LeaveTheViewItsPlaceWhateverTheTool) {
+    std::string script = kBowl;
+    for (const char* tool : {"brush", "line", "writing", "fill", "mask"})
+        script += "set tool " + std::string(tool) + "\nwait 0.2\nplaces\nreport\n";
+    const Ran ran = studio(script, "--headless --size 1280x720");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const auto turns = places_in_turn(ran.out);
+    ASSERT_EQ(turns.size(), 5u);
     std::set<std::pair<double, double>> middles;
-    for (const char* tool : {"brush", "line", "writing", "fill", "mask"}) {
-        const Ran ran = studio(kBowl + "set tool " + tool + "\nwait 0.2\nplaces\n", "--headless --size 1280x720");
-        ASSERT_EQ(ran.status, 0) << ran.err;
-        middles.insert(places(ran.out).at("Fold the tools"));
-    }
+    for (const auto& labels : turns) middles.insert(labels.at("Fold the tools"));
     EXPECT_EQ(middles.size(), 1u);
 }
 
 TEST_F(Panels, AScrollbarShiftsNoColumn) {
-    const auto at = [&](const std::string& height) {
-        const Ran ran = studio(kBowl + "resize 1280 " + height + "\nset wet on\nset persistent on\nwait 0.2\nplaces\n",
-                               "--headless --size 1280x720");
-        EXPECT_EQ(ran.status, 0) << ran.err;
-        return places(ran.out);
-    };
+    const std::string look = "wait 0.2\nplaces\nreport\n";
+    const Ran ran =
+        studio(kBowl + "set wet on\nset persistent on\nresize 1280 500\n" + look + "resize 1280 300\n" + look,
+               "--headless --size 1280x720");
+    ASSERT_EQ(ran.status, 0) << ran.err;
     // In both the tools have as little room as there is a layout for.
-    auto high = at("500"), low = at("300");
+    auto turns = places_in_turn(ran.out);
+    ASSERT_EQ(turns.size(), 2u);
+    auto &high = turns[0], &low = turns[1];
     ASSERT_TRUE(high.contains("Which side"));
     ASSERT_FALSE(low.contains("Which side")) << "it would not scroll";
     for (const char* label : {"goat-small", "wolf-large", "Tuft size", "carbon", "titanium-white"}) {
@@ -245,22 +250,21 @@ TEST_F(Panels, NamesGivenInTheChineseWindowAreStoredAsInTheEnglishOne) {
 TEST_F(Panels, PartsAreHiddenLockedAndMadeOfGlass) {
     std::ofstream(path("m.obj")) << "o body\nv -30 -30 0\nv 30 -30 0\nv 30 30 0\nv -30 30 0\nf 1 2 3 4\n"
                                     "o pane\nv -30 -30 4\nv 30 -30 4\nv 30 30 4\nv -30 30 4\nf 5 6 7 8\n";
-    const std::string kOpen = "click \"fold Parts\"\nwait 0.2\n";  // it stays open in the second window
+    const auto worked = [&](const std::string& language, const std::string& first) {
+        return "open " + path("m.obj") + "\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\nwait-ready\n" +
+               "set language " + language + "\nwait 0.2\n" + first +
+               "click \"show part pane\"\nwait-ready\nwait 0.1\nstroke 46%,50% 50%,52% 54%,50%\nwait-ready\n"
+               "click \"lock part body\"\nwait-ready\nwait 0.1\nclick \"part pane\"\nwait 0.1\n"
+               "click \"Part made of\"\nwait 0.2\nclick \"glass\"\nwait-ready\nwait 0.1\n"
+               "click \"Isolate\"\nwait-ready\nwait 0.1\nclick \"Show all\"\nwait-ready\nsave " +
+               path(language + ".tuft") + "\nwait-ready\n";
+    };
+    // The section stays open.
+    const Ran ran = studio(worked("english", "click \"fold Parts\"\nwait 0.2\n") + worked("chinese", ""),
+                           "--headless --size 1280x900");
+    ASSERT_EQ(ran.status, 0) << ran.err;
     for (const char* language : {"english", "chinese"}) {
         const std::string project = path(std::string(language) + ".tuft");
-        const Ran ran = studio("open " + path("m.obj") +
-                                   "\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\n"
-                                   "wait-ready\nset language " +
-                                   language + "\nwait 0.2\n" + (language == std::string("english") ? kOpen : "") +
-                                   "click \"show part pane\"\nwait-ready\nwait 0.1\n"
-                                   "stroke 46%,50% 50%,52% 54%,50%\nwait-ready\n"
-                                   "click \"lock part body\"\nwait-ready\nwait 0.1\nclick \"part pane\"\nwait 0.1\n"
-                                   "click \"Part made of\"\nwait 0.2\nclick \"glass\"\nwait-ready\nwait 0.1\n"
-                                   "click \"Isolate\"\nwait-ready\nwait 0.1\nclick \"Show all\"\nwait-ready\n"
-                                   "save " +
-                                   project + "\nwait-ready\n",
-                               "--headless --size 1280x900");
-        ASSERT_EQ(ran.status, 0) << ran.err;
         const nlohmann::json parts = tuft("part '" + project + "' list --json")["parts"];
         ASSERT_EQ(parts.size(), 2u);
         EXPECT_EQ(parts[0]["locked"], true);

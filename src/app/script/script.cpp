@@ -48,6 +48,11 @@ int button_of(const ScriptCommand& c) {
     return c.words[0] == "right" ? 1 : 2;
 }
 
+// Whether the program is the same after the command as before it.
+bool only_looks(const ScriptCommand& c) {
+    return c.name == "expect" || c.name == "names" || c.name == "places" || c.name == "report";
+}
+
 // What the arm does, in a word.
 std::string arm_word(const ArmState& arm) {
     if (!arm.arm) return "off";
@@ -351,7 +356,7 @@ void Script::before_frame(Studio& studio, EventQueue& events, double now) {
     };
     hand_out();
     while (next_ < commands_.size() && pending_.empty() && events.empty() && wanted_.picture.empty()) {
-        const bool done = perform(studio, commands_[next_], now);
+        const bool done = perform(studio, commands_[next_], now), changes = !only_looks(commands_[next_]);
         wait_.on = !done;
         if (!done) break;
         ++next_;
@@ -362,7 +367,7 @@ void Script::before_frame(Studio& studio, EventQueue& events, double now) {
         }
         hand_out();
         // What was done is seen before the next command looks.
-        break;
+        if (changes) break;
     }
 }
 
@@ -371,10 +376,14 @@ double Script::patience(const Studio& studio) const {
     return wait_.on ? std::min(0.02, studio.patience()) : 0;
 }
 
-void Script::after_frame(Studio& studio, int width, int height) {
+bool Script::looks() const {
+    return !wait_.on || pace_.on || fuzzer_;
+}
+
+void Script::after_frame(Studio& studio, int width, int height, bool drawn) {
     if (fuzzer_) fuzzer_->contain(studio);
     ++frames_;
-    ++report_.frames;
+    if (drawn) ++report_.frames;
     if (wanted_.picture.empty()) return;
     const std::vector<std::uint8_t> rgb = render::read_pixels(0, 0, width, height);
     io::write_image(wanted_.picture, io::view_of(width, height, 3, rgb.data()));

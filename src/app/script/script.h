@@ -43,8 +43,11 @@ class Script {
 
     /// Adds the events before a frame. `now`: seconds on the window's clock. Throws `Error` where an expectation fails.
     void before_frame(Studio& studio, EventQueue& events, double now);
-    /// Writes pictures after a frame of that size in pixels.
-    void after_frame(Studio& studio, int width, int height);
+    /// Returns whether the next frame's picture counts where no window shows it: not while the script only waits. The
+    /// frame that ends a wait counts, so that each command begins on what is drawn.
+    bool looks() const;
+    /// Writes pictures after a frame of that size in pixels. `drawn`: not only its events were handled.
+    void after_frame(Studio& studio, int width, int height, bool drawn);
     /// Returns the seconds that the next frame may wait: 0 while there are events to play.
     double patience(const Studio& studio) const;
     /// Returns true once when the script asks for a loss of the graphics.

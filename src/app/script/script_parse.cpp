@@ -51,9 +51,10 @@
 ///   resize WIDTH HEIGHT     the window, pixels
 ///   random COUNT SEED       that many events of any kind, also resizing and lost graphics; what would end the
 ///                           program is only counted
-///   report                  frames, seconds, delays from each sample to its ink on the screen and processor time since
-///   the last one, the time of
-///                           the last undo, the peak of memory and where the view is, on standard output
+///   report                  frames drawn, seconds, delays from each sample to its ink on the screen and processor
+///                           time since the last one, the time of the last undo, the peak of memory and where the view
+///                           is, on standard output. Without a window, frames in which the script only waits are not
+///                           drawn unless events are paced
 ///   lose-graphics           as if the graphics driver had been reset
 ///   names                   labels that can be clicked, on standard output
 ///   places                  the same after the pixels where each lies

@@ -93,7 +93,7 @@ void Studio::finish() {
         s.paint_thread->wait_idle(kPictureWait);
         poll_paint_thread(s);
         take_work();
-        scene_.draw(framebuffer_, height_, false);
+        scene_.draw(output_.framebuffer, output_.height, false);
         picture_.store(now_, true);
     }
     close_model(s);
@@ -338,12 +338,12 @@ void Studio::restyle(int width, int height) {
     ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
-void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffer, double now) {
+void Studio::frame(EventQueue& queue, const Output& output, double now) {
     Session& s = session_;
     const double dt = std::max(1e-3, now - now_);
+    const int width = output.width, height = output.height;
     now_ = now;
-    framebuffer_ = framebuffer;
-    height_ = height;
+    output_ = output;
     restyle(width, height);
     poll_session(s);
     if (!queue.empty()) last_event_ = now;
@@ -362,12 +362,12 @@ void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffe
     }
     draw_panels();
     s.ui.enter = false;
-    if (++frames_ % draw_every_ != 0) return ImGui::EndFrame();
-    scene_.draw(framebuffer, height, input_.turned_within(kTurnPause, now));
-    picture_.store(now);
     ImGui::Render();
     if (s.ui.lacks_characters(*ImGui::GetDrawData())) s.preferences.restyle = true;
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    if (!output.seen || ++frames_ % draw_every_ != 0) return;
+    scene_.draw(output.framebuffer, height, input_.turned_within(kTurnPause, now));
+    picture_.store(now);
+    glBindFramebuffer(GL_FRAMEBUFFER, output.framebuffer);
     glViewport(0, 0, width, height);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }

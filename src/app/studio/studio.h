@@ -24,8 +24,14 @@ class Studio {
 
     Session& session() { return session_; }
     const Session& session() const { return session_; }
+    /// Where a frame goes.
+    struct Output {
+        int width = 0, height = 0;  ///< pixels
+        unsigned framebuffer = 0;
+        bool seen = true;  ///< false: all is done but drawing
+    };
     /// Handles the events of one frame and draws it. `now`: seconds on the events' clock.
-    void frame(EventQueue& events, int width, int height, unsigned framebuffer, double now);
+    void frame(EventQueue& events, const Output& output, double now);
     /// Returns the seconds that the next frame may wait for an event: 0 while the picture moves, longer during work
     /// that only shows progress, longest when idle.
     double patience() const;
@@ -64,8 +70,7 @@ class Studio {
     float content_scale_ = 1;
     double now_ = 0, last_event_ = 0;
     std::size_t frames_ = 0, draw_every_ = 1;
-    unsigned framebuffer_ = 0;  ///< of the last frame
-    int height_ = 0;
+    Output output_;  ///< of the last frame
 };
 
 }  // namespace tuft::app

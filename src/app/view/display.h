@@ -19,6 +19,8 @@ class Display {
     virtual void present() = 0;
     /// Returns a fault since the last call for the status bar; else "".
     virtual Message take_trouble() { return {}; }
+    /// Returns false where nobody looks: then only frames whose pixels are read need to be drawn.
+    virtual bool seen() const { return true; }
     virtual bool closed() const = 0;
     virtual void stay_open() {}  ///< resets `closed`
     /// Returns true when the graphics driver was reset and all its memory is lost.

@@ -85,6 +85,7 @@ class Offscreen : public Display {
         if (wait > 0) std::this_thread::sleep_for(std::chrono::duration<double>(std::min(wait, 0.02)));
     }
     void present() override { glFinish(); }
+    bool seen() const override { return false; }
     bool closed() const override { return false; }
     void resize(int width, int height) override {
         width_ = width;
