@@ -27,7 +27,7 @@ struct FitOptions {
     double fine_step = 3;  ///< units, of the last drawings; ink depends on the step, by .005 of the overlap from 5 to 1
     double weak = 0.955;   ///< overlap below which another manner and another begin are tried
     int idle = 4;          ///< tries without a gain after which it stops
-    int knuckle_tries = 20;  ///< drawings at most, after those, in fine steps, that take knuckles off (knuckle_fit.h)
+    int knuckle_tries = 9;  ///< drawings at most, after those, in fine steps, that take knuckles off (knuckle_fit.h)
 };
 
 /// Result of `fit_stations`.

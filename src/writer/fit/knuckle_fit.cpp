@@ -47,11 +47,12 @@ class KnuckleFit {
         out.value = out.reached.score;
         for (const EdgeTurn& turn : knuckles_of(wanted, coverage, turns_)) {
             if (is_under_another(turn.at)) continue;
-            out.value -= kPrice * turn.curvature / kKnuckle;
+            out.value -= kPrice * std::abs(turn.curvature) / kKnuckle;
             out.knuckles.push_back(turn);
         }
-        std::stable_sort(out.knuckles.begin(), out.knuckles.end(),
-                         [](const EdgeTurn& a, const EdgeTurn& b) { return a.curvature > b.curvature; });
+        std::stable_sort(out.knuckles.begin(), out.knuckles.end(), [](const EdgeTurn& a, const EdgeTurn& b) {
+            return std::abs(a.curvature) > std::abs(b.curvature);
+        });
         return out;
     }
 
@@ -98,27 +99,34 @@ Vec2 unit_of(const Vec2& v) {
     return size > 1e-9 ? v / size : Vec2(1, 0);
 }
 
-/// Changes that may take a knuckle off.
-std::vector<std::pair<std::size_t, Change>> changes_at(const std::vector<Station>& s, const Vec2& knuckle) {
+/// Changes that may take a knuckle off: of a swelling or of a neck.
+std::vector<std::pair<std::size_t, Change>> changes_at(const std::vector<Station>& s, const EdgeTurn& knuckle) {
     std::size_t near = 0;
     for (std::size_t i = 0; i < s.size(); ++i)
-        if (glm::distance(s[i].centre, knuckle) < glm::distance(s[near].centre, knuckle)) near = i;
-    const Vec2 out = unit_of(knuckle - s[near].centre);
-    std::vector<std::pair<std::size_t, Change>> all{{near, {-3.0 * out, 1}},   {near, {Vec2(0), 0.88}},
-                                                    {near, {Vec2(0), 1.12}},   {near, {3.0 * out, 1}},
-                                                    {near, {3.0 * out, 0.88}}, {near, {6.0 * out, 0.8}}};
-    if (glm::distance(s[0].centre, knuckle) < kHead && s.size() > 4) {
+        if (glm::distance(s[i].centre, knuckle.at) < glm::distance(s[near].centre, knuckle.at)) near = i;
+    const Vec2 out = unit_of(knuckle.at - s[near].centre);
+    const bool neck = knuckle.curvature < 0;
+    std::vector<std::pair<std::size_t, Change>> all;
+    if (neck)
+        for (const Change& c : {Change{Vec2(0), 1.12}, Change{3.0 * out, 1}, Change{3.0 * out, 1.12}})
+            all.emplace_back(near, c);
+    else
+        for (const Change& c : {Change{-3.0 * out, 1}, Change{Vec2(0), 0.88}, Change{Vec2(0), 1.12},
+                                Change{3.0 * out, 1}, Change{3.0 * out, 0.88}, Change{6.0 * out, 0.8}})
+            all.emplace_back(near, c);
+    if (glm::distance(s[0].centre, knuckle.at) < kHead && s.size() > 4) {
         const Vec2 on = unit_of(s[2].centre - s[0].centre), left(-on.y, on.x);
         for (const Vec2& shift : {4.0 * left, -4.0 * left, 4.0 * on, -4.0 * on}) all.push_back({0, {shift, 1}});
         all.push_back({0, {Vec2(0), 1.3}});
-        all.push_back({0, {Vec2(0), 0.7}});
+        if (!neck) all.push_back({0, {Vec2(0), 0.7}});
     }
     return all;
 }
 
-bool has_near(const std::vector<EdgeTurn>& knuckles, const Vec2& p) {
-    return std::any_of(knuckles.begin(), knuckles.end(),
-                       [&](const EdgeTurn& k) { return glm::distance(k.at, p) < kSame; });
+bool has_like(const std::vector<EdgeTurn>& knuckles, const EdgeTurn& one) {
+    return std::any_of(knuckles.begin(), knuckles.end(), [&](const EdgeTurn& k) {
+        return k.curvature * one.curvature > 0 && glm::distance(k.at, one.at) < kSame;
+    });
 }
 
 }  // namespace
@@ -132,8 +140,8 @@ FitResult take_off_knuckles(FitResult fitted, const FitTarget& target, const std
         const double before = best.value;
         const std::vector<EdgeTurn> knuckles = best.knuckles;
         for (const EdgeTurn& knuckle : knuckles)
-            for (const auto& [at, change] : changes_at(best.stations, knuckle.at)) {
-                if (!fit.may_draw() || !has_near(best.knuckles, knuckle.at)) break;
+            for (const auto& [at, change] : changes_at(best.stations, knuckle)) {
+                if (!fit.may_draw() || !has_like(best.knuckles, knuckle)) break;
                 Drawing next = fit.draw(changed(best.stations, at, change));
                 if (next.value > best.value) best = std::move(next);
             }

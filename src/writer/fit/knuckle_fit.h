@@ -7,10 +7,11 @@
 namespace tuft::writer {
 
 /// Returns the stations with the fewest knuckles among those of `fitted` with heads, corners and tails moved where a
-/// knuckle is. Near each, until it is gone, the path moves by 3 units away from it or by 3 or 6 towards it, the half
-/// width changes by an eighth, a head begins sooner, later or to the side. What is kept raises
+/// knuckle is. Near each, until it is gone, the path moves by 3 units away from a swelling, or by 3 or 6 towards it,
+/// and by 3 towards a neck; the half width changes by an eighth; a head begins sooner, later or to the side. What is
+/// kept raises
 ///
-///     score − 0.01 Σ curvature / kKnuckle  over the knuckles,
+///     score − 0.01 Σ |curvature| / kKnuckle  over the knuckles,
 ///
 /// `score` as in `fit_stations`. Knuckles under other strokes do not count. At most `options.knuckle_tries` drawings in
 /// steps of `options.fine_step`; one where the stroke has no knuckle. Deterministic.

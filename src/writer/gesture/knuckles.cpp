@@ -86,10 +86,11 @@ std::vector<EdgeTurn> edge_turns(const Cells& frame, std::span<const float> cove
             const double speed = std::max(glm::length(d), 1e-9);
             curvature[i] = (d.x * dd.y - d.y * dd.x) / (speed * speed * speed);
         }
-        for (std::size_t i = 0; i < n; ++i)
-            if (curvature[i] > least && curvature[i] >= curvature[(i + n - 1) % n] &&
-                curvature[i] > curvature[(i + 1) % n])
+        for (std::size_t i = 0; i < n; ++i) {
+            const double side = curvature[i] > 0 ? 1 : -1, own = side * curvature[i];
+            if (own > least && own >= side * curvature[(i + n - 1) % n] && own > side * curvature[(i + 1) % n])
                 turns.push_back({p[i], curvature[i]});
+        }
     }
     return turns;
 }
@@ -98,7 +99,7 @@ std::vector<EdgeTurn> knuckles_of(const Cells& frame, std::span<const float> ink
     std::vector<EdgeTurn> turns = edge_turns(frame, ink, kKnuckle);
     std::erase_if(turns, [&](const EdgeTurn& turn) {
         return std::any_of(wanted.begin(), wanted.end(), [&](const EdgeTurn& w) {
-            return glm::distance(w.at, turn.at) < kNear && w.curvature > kAlike * turn.curvature;
+            return glm::distance(w.at, turn.at) < kNear && w.curvature / turn.curvature > kAlike;
         });
     });
     return turns;
