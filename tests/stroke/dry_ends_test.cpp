@@ -104,7 +104,7 @@ TEST(DryBrush, AFilbertsStrokeEndsInOneEdge) {
         first = std::min(first, end);
         last = std::max(last, end);
     }
-    // Hair by hair, two rows lie 0.41 mm apart. Ends of hair differ by 0.1 mm, and a texel is 0.06 mm.
+    // Hair by hair, two rows lie 0.35 mm apart. Ends of hair differ by 0.1 mm, and a texel is 0.06 mm.
     EXPECT_LT(static_cast<double>(last - first) * kSide / kSize, 0.25e-3);
 }
 
