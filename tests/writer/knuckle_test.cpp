@@ -83,7 +83,7 @@ TEST(Knuckles, TheFitTakesASwellingOff) {
             for (int i = 0; i < target.wanted.width; ++i)
                 coverage.push_back(static_cast<float>(ink.at(target.wanted.centre(i, j) * hand.unit)));
         double sum = 0;
-        for (const EdgeTurn& turn : knuckles_of(target.wanted, coverage, wanted)) sum += turn.curvature;
+        for (const EdgeTurn& turn : knuckles_of(target.wanted, coverage, wanted)) sum += std::abs(turn.curvature);
         return sum;
     };
     const FitResult taken = take_off_knuckles({.stations = stations}, target, depths, hand, {}, options);
