@@ -29,17 +29,15 @@ install_missing() {
 
 # build TARGET...: configures the release preset and builds.
 build() {
-  local log=build/configure.log flags=${CXXFLAGS:-}
+  local log=build/configure.log
   mkdir -p build
   say "building (release)"
-  # GCC collects garbage from 128 MiB on, which takes a twelfth of the time: here from 1 GiB on, see jobs_for_memory.
-  if "${CXX:-c++}" --version 2>/dev/null | grep -q 'Free Software'; then flags+=' --param=ggc-min-heapsize=1048576'; fi
-  cmake --preset release -DTUFT_UNITY=ON -DCMAKE_CXX_FLAGS="$flags" "${cmake_options[@]}" >"$log" 2>&1 || { cat "$log" >&2; return 1; }
+  cmake --preset release -DTUFT_UNITY=ON "${cmake_options[@]}" >"$log" 2>&1 || { cat "$log" >&2; return 1; }
   # A build from nothing finds nothing in the cache: depend mode saves running the preprocessor before each compilation.
   CCACHE_DEPEND=1 cmake --build --preset release --parallel "$(jobs_for_memory)" --target "$@" >&2
 }
 
-# A CGAL source takes 2 GB to compile, a group of others up to 1.5: as many jobs as cores, but no more than memory allows.
+# A CGAL source takes 2 GB to compile: as many jobs as cores, but no more than memory allows.
 jobs_for_memory() {
   local cores gib
   cores=$(nproc)
