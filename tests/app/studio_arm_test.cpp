@@ -100,8 +100,9 @@ TEST_F(StudioArm, AServiceThatDiesLeavesTheStrokeAndOneLine) {
 TEST_F(StudioArm, ARecordingPaintsWhatTheArmDid) {
     tuft("device record --simulate inverse3 --model '" + source_folder() +
          "/models/bowl.ply' --brush wolf-medium --motion drag --seconds 2.5 -o '" + path("a.csv") + "'");
+    // That it paints is seen by its stroke: a window on a busy machine may have no turn while the recording plays.
     expect_played(kLookedAt + "set arm-source recording\nset arm-recording " + path("a.csv") +
-                  "\nset arm on\nawait arm painting\nawait message \"has ended\"\nwait-ready\nexpect strokes 1\nexpect "
+                  "\nset arm on\nawait message \"has ended\"\nwait-ready\nexpect strokes 1\nexpect "
                   "arm off\nwait 0.2\n");
     EXPECT_EQ(strokes_that_replay("work.tuft"), 1);
 }
