@@ -589,31 +589,5 @@ TEST(WideOutline, OutlinesFollowTheOpenings) {
     EXPECT_LT(coverage_area(rasterise(outlines_of(tuft, kFlat), kFlat, 0, kCell)), whole);
 }
 
-/// Hair of a filbert that is hardly dry is one patch: ink spans the wedges between hairs of its toe, where no hair
-/// lies.
-TEST(WideOutline, HardlyDryHairOfAFilbertIsClosed) {
-    brush::Tuft tuft = brush::make_tuft(brush::load_preset("filbert-12"), 5);
-    const brush::ContactPlane ground;
-    const double length = tuft.preset.length;
-    brush::TuftState state;
-    for (int i = 0; i <= 300; ++i) {
-        const double gone = 0.1e-3 * i, press = std::min({1.0, gone / 3e-3, 0.3 + (30e-3 - gone) / 10e-3});
-        state = brush::step(tuft, {.position = {0, gone, length - 0.25 * length * press}}, std::span(&ground, 1), 3e-3);
-    }
-    const Recycled<Trail> trails = find_trails(state, kFlat, {}, length, 1e-4);
-    const Recycled<Outline> outlines = outlines_of(trails, 20);
-    const TouchingHair hair{trails, outlines, tuft.bundles, static_cast<int>(state.branches.size())};
-    const Recycled<double> wet(tuft.bundles.place.size(), 0.999);
-    const auto area = [&](double apart) {
-        HairInk ink{wet, 0, {0, 1}};
-        ink.apart = apart;
-        return coverage_area(draw_hair_marks(hair, ink, {kFlat, 0, kCell}).footprint);
-    };
-    const double closed = coverage_area(rasterise(outlines, kFlat, 0, kCell));
-    EXPECT_LT(area(1), 0.9 * closed) << "there are wedges";
-    EXPECT_DOUBLE_EQ(area(0), closed);
-    EXPECT_NEAR(area(0.5), 0.5 * (area(0) + area(1)), 0.005 * closed) << "levels of 1/255";
-}
-
 }  // namespace
 }  // namespace tuft::footprint
