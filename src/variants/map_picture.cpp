@@ -83,10 +83,8 @@ render::Image draw_map(const stroke::Model& model, const MapPicture& picture, co
     appearance.maps.corner_uvs = model.atlas.corner_uvs;
     appearance.maps.base_colour = colours;
     render::PictureOptions options;
-    // Colours say more here than light.
-    options.edge_samples = 8;
-    options.light_samples = 8;
-    options.light_step = 2;
+    options.edge_samples = 8;  // colours say more here than light
+    options.light_samples = 12;
     options.width = picture.width;
     options.height = picture.height;
     options.view.azimuth = picture.view_deg[0] * kDegree;

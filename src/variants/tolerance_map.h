@@ -65,7 +65,7 @@ struct MapPicture {
     Vec3f body{0.8f};                ///< linear colour of the bare model
     std::vector<double> view_deg;    ///< [2] azimuth and elevation
     Box around;                      ///< metres, to look at; empty: the whole model
-    int width = 960, height = 720;   ///< pixels
+    int width = 960, height = 720;   ///< pixels; 480 x 360 holds the scale
 };
 
 /// Draws values of texels on the model by colour, with their scale at the right.

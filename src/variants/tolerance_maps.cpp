@@ -17,6 +17,8 @@ namespace tuft::variants {
 namespace {
 
 constexpr std::size_t kLeastSamples = 2;
+constexpr int kMapSize = 3;        // widths of a variant's picture
+constexpr int kSmallestMap = 480;  // pixels of its width, at a height of 360: the scale has room
 
 /// A decoration and its samples under one tolerance.
 struct Group {
@@ -87,6 +89,9 @@ MapRow draw_group(const Jobs& jobs, const Group& group, std::size_t number, cons
     picture.body = body_of(group.planned->figures.substrate);
     picture.view_deg = group.planned->figures.view_deg;
     picture.around = map.box();
+    const PictureChoice& small = group.planned->task.picture;
+    picture.width = std::clamp(kMapSize * small.width, kSmallestMap, kLargestPicture);
+    picture.height = std::clamp(kMapSize * small.height, kSmallestMap * 3 / 4, kLargestPicture);
     const std::vector<float> probability = map.probability();
     picture.values = only_where(probability, probability, 100);
     picture.unit = "%";

@@ -23,7 +23,8 @@ struct MapRow {
 };
 
 /// Draws tolerance-map-01-ink.png, tolerance-map-01-moved.png, … of all decorations whose plan and at least two samples
-/// are painted, and writes the figures to tolerance.csv. Throws `Error` for damaged results.
+/// are painted, three times as wide as the variants' pictures and 480 pixels at least, and writes the figures to
+/// tolerance.csv. Throws `Error` for damaged results.
 std::vector<MapRow> write_tolerance_maps(const Jobs& jobs, const std::vector<Row>& rows, const ModelOf& model_of,
                                          const ProgressFn& progress = {});
 

@@ -93,6 +93,8 @@ TEST_F(Variants, OneAndFourWorkersGiveTheSameTable) {
                                  "tolerance.csv", "table.csv", "slurm.sh", "parallel.sh", "openjd.yaml"})
             EXPECT_TRUE(fs::exists(path(std::string(jobs) + "/" + file))) << file;
     }
+    const std::string png = read(path("one/tolerance-map-01-ink.png"));
+    EXPECT_EQ(png.substr(16, 8), std::string("\0\0\x01\xe0\0\0\x01\x68", 8)) << "480 x 360, as the scale needs";
     const auto one = table("one");
     EXPECT_EQ(one.size(), 20u);
     EXPECT_EQ(one, table("four"));
