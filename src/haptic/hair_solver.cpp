@@ -1,12 +1,11 @@
 #include "haptic/hair_solver.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "core/ease.h"
+#include "core/system/cpu_time.h"
 #include "haptic/device/limits.h"
 
 namespace tuft::haptic {
@@ -15,13 +14,6 @@ namespace {
 constexpr double kMargin = 5e-3;  // m from the surface at which a point of the handle becomes a bound
 // m up the handle; the closest two points are nearer to each other than the handle is thick
 constexpr std::array kUpTheHandle{0.006, 0.013, 0.021, 0.031, 0.044, 0.061, 0.083, 0.112, 0.15};
-
-/// Of this thread: what another one takes from it meanwhile does not count.
-double cpu_seconds() {
-    timespec t{};
-    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 }  // namespace
 
@@ -91,7 +83,7 @@ Vec3 HairSolver::paste_drag(const Vec3& velocity) const {
 }
 
 HairAnswer HairSolver::solve(const RootPose& pose) {
-    const double begin = cpu_seconds();
+    const double begin = thread_cpu_seconds();
     if (!started_ || pose.taken_up != last_.taken_up) restart(pose);
     const double dt = static_cast<double>(pose.tick - last_.tick) * kPeriod;
     const double time = static_cast<double>(pose.tick) * kPeriod;
@@ -114,7 +106,7 @@ HairAnswer HairSolver::solve(const RootPose& pose) {
     }
     bound_root(pose, answer);
     last_ = pose;
-    answer.seconds = cpu_seconds() - begin;
+    answer.seconds = thread_cpu_seconds() - begin;
     return answer;
 }
 

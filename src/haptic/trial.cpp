@@ -52,7 +52,7 @@ TrialReport run_trial(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface
     Quat rotation{1, 0, 0, 0};
     std::uint64_t last_hard = 0;
     for (std::uint64_t tick = 1; tick <= periods; ++tick) {
-        if (tick % 1024 == 0) check_interrupt();
+        if (tick % 64 == 0) check_interrupt();
         const double time = static_cast<double>(tick) * kPeriod;
         arm.advance(time);
         const DeviceState state = arm.measure();

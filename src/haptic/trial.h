@@ -72,6 +72,7 @@ struct TrialReport {
 };
 
 /// Moves the simulated hand along `path` and returns what happened. Virtual time: the same input gives the same bits.
+/// Throws `Cancelled` when the process is interrupted.
 TrialReport run_trial(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface, const HandPath& path,
                       const TrialOptions& options);
 

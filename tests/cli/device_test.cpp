@@ -46,7 +46,20 @@ TEST_F(Device, TestPrintsTheFiguresOfASimulatedArm) {
                             "late_solves_percent", "stop_ms"})
         EXPECT_TRUE(out[key].is_number()) << key;
     EXPECT_GE(out["least_energy_uj"], -1);
+    EXPECT_TRUE(out["complete"]);
     EXPECT_EQ(out["allocations"], 0);
+}
+
+TEST_F(Device, AnInterruptedTestPrintsWhatItHas) {
+    const std::string test = "device test --simulate touch --model sheet --threads 1 --json --quiet --hands 100000";
+    const test::Ran ran = tuft(test, "timeout --preserve-status -s INT -k 3 0.3");
+    EXPECT_EQ(ran.status, 1);
+    EXPECT_EQ(ran.err, "tuft: stopped\n");
+    const nlohmann::json out = nlohmann::json::parse(ran.out);
+    EXPECT_FALSE(out["complete"]);
+    EXPECT_LT(out["trials"], 18 + 100'000);  // two places, nine motions
+    EXPECT_EQ(out["hands"].get<int>() > 0, out["trials"].get<int>() > 18);
+    EXPECT_FALSE(out.contains("stop_ms"));
 }
 
 TEST_F(Device, ARecordingPlaysAgainToTheBit) {

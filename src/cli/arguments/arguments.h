@@ -340,6 +340,7 @@ struct ArmSimulation {
 /// What `tuft device test` tries beside its checks.
 struct ArmTrial {
     int hands = 0;             ///< random hands
+    int first_hand = 0;        ///< number of the first of them
     double hours = 0;          ///< simulated, one hand
     bool all_brushes = false;  ///< all shipped ones, not only `brush`
 };

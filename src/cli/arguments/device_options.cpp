@@ -57,7 +57,11 @@ CLI::App* add_device(CLI::App& app, DeviceWork& d) {
     auto* test = device->add_subcommand("test", "check safety, stability and loop of an arm (hands off), or simulated");
     add_arm(test, d);
     add_hand(test, d);
-    test->add_option("--hands", d.trial.hands, "try so many random hands too (10000: ten minutes of one core)")
+    test->add_option("--hands", d.trial.hands,
+                     "try so many random hands too; an interrupted test prints the figures of those that are done")
+        ->check(number_in(0, 1000000));
+    test->add_option("--first-hand", d.trial.first_hand,
+                     "number of the first random hand, to go on where a test was interrupted (default: 0)")
         ->check(number_in(0, 1000000));
     test->add_option("--hours", d.trial.hours, "try one hand for so many simulated hours too")
         ->check(number_in(0, 100));

@@ -13,6 +13,7 @@
 #include "cli/bench/bench_threads.h"
 #include "cli/steps/commands.h"
 #include "cli/steps/steps.h"
+#include "core/system/cpu_time.h"
 #include "core/system/parallel.h"
 #include "ink/composite/composite.h"
 #include "io/model/read_model.h"
@@ -40,14 +41,14 @@ double microseconds_per_square(int films, const char* substrate_name) {
     std::vector<double> runs;
     double sink = 0;
     for (int repeat = 0; repeat < 60; ++repeat) {
-        const double start = cpu_seconds();
+        const double start = thread_cpu_seconds();
         for (std::size_t tile = 0; tile < 16; ++tile) {
             ink::TileFilm film;
             for (std::size_t p = 0; p < 4; ++p) film.pigments[p] = &planes[4 * tile + p];
             const std::vector<ink::TileFilm> stack(static_cast<std::size_t>(films), film);
             sink += ink::shade_films(stack, nullptr, pigments, substrate).colour[0][tile];
         }
-        runs.push_back((cpu_seconds() - start) * 1e6);
+        runs.push_back((thread_cpu_seconds() - start) * 1e6);
     }
     return sink < 0 ? 0 : quantile_of(runs, 0.5);
 }
@@ -73,9 +74,9 @@ RodTimes rod_microseconds(const brush::Preset& preset, int runs) {
             pose.time = t;
             pose.position = {0.05 * std::clamp(t - 0.3, 0.0, 2.4), 0.004 * std::sin(6 * t),
                              length * (1.02 - 0.3 * press)};
-            const double start = cpu_seconds();
+            const double start = thread_cpu_seconds();
             brush::step(tuft, pose, std::span(&plane, 1), 1e-3);
-            times.push_back((cpu_seconds() - start) * 1e6);
+            times.push_back((thread_cpu_seconds() - start) * 1e6);
             sum += times.back();
         }
         means.push_back(sum / kSolves);

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "brush/tuft/tuft.h"
+#include "core/system/cpu_time.h"
 #include "core/text/units.h"
 #include "ink/exchange/deposit.h"
 
@@ -89,12 +90,6 @@ ProgressFn timed(const ProgressFn& progress, MeasuredModel& m) {
 
 }  // namespace
 
-double cpu_seconds() {
-    timespec t{};
-    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 double wall_seconds() {
     timespec t{};
     ::clock_gettime(CLOCK_MONOTONIC, &t);
@@ -164,7 +159,7 @@ double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps
     footprint::StampJobs jobs;
     for (int repeat = 0; repeat < 7; ++repeat) {
         bool piecewise = false;
-        const double start = cpu_seconds();
+        const double start = thread_cpu_seconds();
         for (const footprint::Footprint& f : path) {
             jobs = footprint::plan_stamp(surface, f, {}, options, scratch, std::move(jobs));
             piecewise = footprint::choose_mode(jobs, piecewise, options);
@@ -175,7 +170,7 @@ double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps
                     ink::deposit(canvas, {job.slot, exposure, tile.area}, params, law);
             }
         }
-        runs.push_back((cpu_seconds() - start) / stamps * 1e6);
+        runs.push_back((thread_cpu_seconds() - start) / stamps * 1e6);
     }
     return quantile_of(runs, 0.5);
 }
@@ -233,9 +228,9 @@ double stamps_per_second(const stroke::Model& model, int texels, double wiped, c
     std::vector<double> runs;
     for (int repeat = 0; repeat < repeats; ++repeat) {
         if (wiped > 0) painting.paint(wipe);
-        const double start = cpu_seconds();
+        const double start = thread_cpu_seconds();
         const stroke::StrokeReport report = painting.paint(s);
-        runs.push_back(static_cast<double>(report.stamps) / (cpu_seconds() - start));
+        runs.push_back(static_cast<double>(report.stamps) / (thread_cpu_seconds() - start));
     }
     return quantile_of(runs, 0.5);
 }

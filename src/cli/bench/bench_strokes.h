@@ -12,7 +12,6 @@
 /// What `tuft bench` measures strokes with: models, paths over them and clocks.
 namespace tuft::cli {
 
-double cpu_seconds();   ///< of this thread
 double wall_seconds();  ///< since some start
 /// The value below which a part q of the values lies; 0 without values.
 double quantile_of(std::vector<double> values, double q);

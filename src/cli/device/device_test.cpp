@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -68,6 +69,42 @@ double quantile(std::vector<float> values, double q) {
     return static_cast<double>(values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))]);
 }
 
+nlohmann::json to_json(const Trials& trials) {
+    const haptic::TrialReport& worst = trials.worst;
+    const std::vector<float>& solves = worst.seconds;
+    const TrialsDone &hands = trials.hands, &hours = trials.hours;
+    return {{"complete", trials.complete},
+            {"hands", hands.count},
+            {"hand_cpu_ms", 1e3 * hands.cpu_seconds / static_cast<double>(std::max<std::size_t>(hands.count, 1))},
+            {"minutes", hours.count},
+            {"least_energy_uj", 1e6 * worst.least_energy},
+            {"least_energy_at", trials.least_energy_at},
+            {"least_energy_with_arm_uj", 1e6 * worst.least_with_arm},
+            {"largest_step_n", worst.largest_step},
+            {"largest_step_at", trials.largest_step_at},
+            {"largest_step_hard_n", worst.largest_step_hard},
+            {"largest_force_n", worst.largest_force},
+            {"trials", trials.motions.count + hands.count + hours.count},
+            {"simulated_s", static_cast<double>(worst.periods) * haptic::kPeriod},
+            {"contacts", worst.contacts},
+            {"most_evaluations", worst.most_evaluations},
+            {"mean_evaluations",
+             static_cast<double>(worst.evaluations) / static_cast<double>(std::max<std::size_t>(worst.solves, 1))},
+            {"unconverged_percent", percent(worst.unconverged, worst.solves)},
+            {"solve_us",
+             {{"p50", 1e6 * quantile(solves, 0.5)},
+              {"p999", 1e6 * quantile(solves, 0.999)},
+              {"worst", 1e6 * quantile(solves, 1)}}}};
+}
+
+void print(const nlohmann::json& out, bool as_json) {
+    if (as_json)
+        print_json(out);
+    else
+        for (const auto& [key, value] : out.items()) fmt::print("{:26}{}\n", key, value.dump());
+    std::fflush(stdout);
+}
+
 }  // namespace
 
 int test_device(const DeviceWork& a) {
@@ -77,27 +114,13 @@ int test_device(const DeviceWork& a) {
     if (!a.arm.simulate.empty()) {
         haptic::device_preset(a.arm.simulate);
         const Trials trials = run_trials(a, places, console);
-        const haptic::TrialReport& worst = trials.worst;
-        const std::vector<float>& solves = worst.seconds;
-        out = {{"least_energy_uj", 1e6 * worst.least_energy},
-               {"least_energy_at", trials.least_energy_at},
-               {"least_energy_with_arm_uj", 1e6 * worst.least_with_arm},
-               {"largest_step_n", worst.largest_step},
-               {"largest_step_at", trials.largest_step_at},
-               {"largest_step_hard_n", worst.largest_step_hard},
-               {"largest_force_n", worst.largest_force},
-               {"trials", trials.count},
-               {"simulated_s", static_cast<double>(worst.periods) * haptic::kPeriod},
-               {"contacts", worst.contacts},
-               {"most_evaluations", worst.most_evaluations},
-               {"mean_evaluations",
-                static_cast<double>(worst.evaluations) / static_cast<double>(std::max<std::size_t>(worst.solves, 1))},
-               {"unconverged_percent", percent(worst.unconverged, worst.solves)},
-               {"solve_us",
-                {{"p50", 1e6 * quantile(solves, 0.5)},
-                 {"p999", 1e6 * quantile(solves, 0.999)},
-                 {"worst", 1e6 * quantile(solves, 1)}}},
-               {"stop_ms", slowest_stop(a, places)}};
+        out = to_json(trials);
+        if (!trials.complete) {
+            console.clear();
+            print(out, a.common.json);
+            throw Cancelled();
+        }
+        out["stop_ms"] = slowest_stop(a, places);
     }
     const haptic::LoopStatus loop = run_loop(a, places);
     console.clear();
@@ -111,10 +134,7 @@ int test_device(const DeviceWork& a) {
     out["memory_locked"] = loop.locked;
     if (!loop.realtime)
         console.note("the system allows no real-time priority: cycles will be late (ulimit -r, or CAP_SYS_NICE)");
-    if (a.common.json)
-        print_json(out);
-    else
-        for (const auto& [key, value] : out.items()) fmt::print("{:26}{}\n", key, value.dump());
+    print(out, a.common.json);
     return 0;
 }
 

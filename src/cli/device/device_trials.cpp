@@ -4,10 +4,13 @@
 
 #include <cmath>
 #include <functional>
+#include <optional>
 
 #include "brush/preset/preset.h"
 #include "cli/steps/steps.h"
+#include "core/error.h"
 #include "core/random.h"
+#include "core/system/cpu_time.h"
 #include "core/system/parallel.h"
 
 namespace tuft::cli {
@@ -29,36 +32,63 @@ void add(Places& places, ContactModel model, const std::string& name, Where wher
     places.models.push_back(std::move(model));
 }
 
-/// One trial: its result, and where it was.
+/// One trial: its result, where it was, and what it cost.
 struct Tried {
     TrialReport report;
     std::string where;
+    double cpu_seconds = 0;
 };
 using TrialFn = std::function<Tried(std::size_t)>;
 
-/// Runs trials 0 to n - 1 side by side, some at a time so that their forces do not fill the memory.
-void run_all(const std::string& what, std::size_t n, const TrialFn& trial, bool keep_seconds, Console& console,
-             Trials& trials) {
+/// Trials of one kind.
+struct Kind {
+    std::string name;
+    std::size_t n = 0;
+    std::size_t per_thread = 8;  // at a time
+    bool keep_seconds = false;
+};
+
+/// Trials first to first + n - 1, side by side. Those that an interrupt left undone are empty.
+std::vector<std::optional<Tried>> try_some(std::size_t first, std::size_t n, const TrialFn& trial, bool keep_seconds) {
+    std::vector<std::optional<Tried>> batch(n);
+    const auto try_range = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const double start = thread_cpu_seconds();
+            Tried tried = trial(first + i);
+            tried.cpu_seconds = thread_cpu_seconds() - start;
+            tried.report.forces = {};
+            tried.report.roots = {};
+            if (!keep_seconds) tried.report.seconds = {};
+            batch[i] = std::move(tried);
+        }
+    };
+    try {
+        parallel_for(n, 1, try_range);
+    } catch (const Cancelled&) {
+        return batch;
+    }
+    return batch;
+}
+
+/// Runs all trials of a kind, some at a time so that their forces do not fill the memory.
+TrialsDone run_all(const Kind& kind, const TrialFn& trial, Console& console, Trials& trials) {
     const ProgressFn progress = console.progress();
-    const std::size_t at_once = 8 * static_cast<std::size_t>(thread_count());
-    for (std::size_t first = 0; first < n; first += at_once) {
-        report(progress, what.c_str(), static_cast<double>(first) / static_cast<double>(n));
-        std::vector<Tried> batch(std::min(at_once, n - first));
-        parallel_for(batch.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                batch[i] = trial(first + i);
-                batch[i].report.forces = {};
-                batch[i].report.roots = {};
-                if (!keep_seconds) batch[i].report.seconds = {};
-            }
-        });
-        for (const Tried& tried : batch) {
-            if (tried.report.least_energy < trials.worst.least_energy) trials.least_energy_at = tried.where;
-            if (tried.report.largest_step > trials.worst.largest_step) trials.largest_step_at = tried.where;
-            haptic::merge(trials.worst, tried.report);
+    const std::size_t at_once = kind.per_thread * static_cast<std::size_t>(thread_count());
+    TrialsDone done;
+    while (trials.complete && done.count < kind.n) {
+        if (progress) progress(kind.name, static_cast<double>(done.count) / static_cast<double>(kind.n));
+        for (const std::optional<Tried>& tried :
+             try_some(done.count, std::min(at_once, kind.n - done.count), trial, kind.keep_seconds)) {
+            trials.complete = trials.complete && tried.has_value();
+            if (!trials.complete) break;
+            if (tried->report.least_energy < trials.worst.least_energy) trials.least_energy_at = tried->where;
+            if (tried->report.largest_step > trials.worst.largest_step) trials.largest_step_at = tried->where;
+            haptic::merge(trials.worst, tried->report);
+            ++done.count;
+            done.cpu_seconds += tried->cpu_seconds;
         }
     }
-    trials.count += n;
+    return done;
 }
 
 std::string where_of(const std::string& brush, const haptic::TrialPlace& place, HandMotion motion) {
@@ -83,13 +113,15 @@ void try_motions(const DeviceWork& a, const Places& places, Console& console, Tr
                                trial_options(a, tuft.preset)),
                      where_of(tuft.preset.name, places.place[p], motion)};
     };
-    run_all("motions", tufts.size() * of_a_brush, trial, true, console, trials);
+    trials.motions =
+        run_all({.name = "motions", .n = tufts.size() * of_a_brush, .keep_seconds = true}, trial, console, trials);
 }
 
 /// Hands of any weight and grip, one second each with a motion of its own.
 void try_hands(const DeviceWork& a, const Places& places, Console& console, Trials& trials) {
     const std::vector<brush::Tuft> tufts = tufts_of(a);
-    const TrialFn trial = [&](std::size_t hand) {
+    const TrialFn trial = [&](std::size_t i) {
+        const std::size_t hand = static_cast<std::size_t>(a.trial.first_hand) + i;
         const brush::Tuft& tuft = tufts[hand % tufts.size()];
         Random random(static_cast<std::uint64_t>(hand) + 1);
         TrialOptions options = trial_options(a, tuft.preset);
@@ -104,7 +136,7 @@ void try_hands(const DeviceWork& a, const Places& places, Console& console, Tria
             run_trial(tuft, *places.surface[p], haptic::hand_path(motion, places.place[p], tuft.preset, seed), options),
             fmt::format("{}, hand {}", where_of(tuft.preset.name, places.place[p], motion), hand)};
     };
-    run_all("hands", static_cast<std::size_t>(a.trial.hands), trial, false, console, trials);
+    trials.hands = run_all({.name = "hands", .n = static_cast<std::size_t>(a.trial.hands)}, trial, console, trials);
 }
 
 void try_hours(const DeviceWork& a, const Places& places, Console& console, Trials& trials) {
@@ -120,7 +152,8 @@ void try_hours(const DeviceWork& a, const Places& places, Console& console, Tria
                                haptic::hand_path(motion, places.place[p], tuft.preset, part + 1), options),
                      fmt::format("{}, minute {}", where_of(tuft.preset.name, places.place[p], motion), part)};
     };
-    run_all("hours", static_cast<std::size_t>(std::ceil(a.trial.hours * 3600 / kPart)), trial, false, console, trials);
+    const auto parts = static_cast<std::size_t>(std::ceil(a.trial.hours * 3600 / kPart));
+    trials.hours = run_all({.name = "hours", .n = parts, .per_thread = 1}, trial, console, trials);
 }
 
 }  // namespace

@@ -25,14 +25,23 @@ Places places_of(const DeviceWork& a);
 /// Returns the options of one trial that the arguments state.
 haptic::TrialOptions trial_options(const DeviceWork& a, const brush::Preset& preset);
 
+/// How many trials of one kind are done, and their CPU time, s.
+struct TrialsDone {
+    std::size_t count = 0;
+    double cpu_seconds = 0;
+};
+
 /// Worst figures of several trials.
 struct Trials {
-    haptic::TrialReport worst;  ///< `seconds`: of the solves of the plain motions
-    std::size_t count = 0;
+    haptic::TrialReport worst;                     ///< `seconds`: of the solves of the plain motions
+    TrialsDone motions, hands, hours;              ///< `hours`: one for each minute
+    bool complete = true;                          ///< not interrupted
     std::string least_energy_at, largest_step_at;  ///< brush, place and motion; random hands with their number
 };
 
-/// All motions at all places with each brush; then `--hands` random hands and `--hours` of painting.
+/// All motions at all places with each brush; then `--hands` random hands and `--hours` of painting. Where the process
+/// is interrupted, the first trials of each kind up to one that is not done; the figures of so many trials do not
+/// depend on when or whether that happened.
 Trials run_trials(const DeviceWork& a, const Places& places, Console& console);
 
 }  // namespace tuft::cli
