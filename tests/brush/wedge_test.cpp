@@ -61,6 +61,20 @@ TEST(Wedge, SlopeTurnsNoFasterThanTheRoundingAllows) {
     }
 }
 
+TEST(Wedge, TheHeightOverAnEdgeIsItsDistanceAndThatOfOneFaceUnlessItIsInFront) {
+    Random random(12);
+    for (int i = 0; i < 2000; ++i) {
+        const Wedge w = edge(random.uniform(0.2, 1.5));
+        const RoundedEdge e = round_edge(w, kRound);
+        const Vec3 x{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+        const EdgeHeight height = edge_height(e, x);
+        const Distance d = edge_distance(e, x);
+        EXPECT_EQ(height.z, d.z);
+        EXPECT_EQ(height.face<0, d.bend> 0);
+        if (height.face >= 0) EXPECT_EQ(d.slope, w.normal[height.face]);
+    }
+}
+
 TEST(Wedge, ALineOverAnEdgeHasTheDistancesOfItsPoints) {
     Random random(11);
     for (int i = 0; i < 2000; ++i) {

@@ -13,13 +13,13 @@ namespace {
 struct Shortened {
     double s = 0, depth = 0;
     double miss = 0;         // s / compliance less the force along the hair
-    double slope = 0;        // ∂miss/∂s
+    LineDistance distance;   // of the piece from the surface
     NormalForce push, pull;  // of the contact, and of the wet film
 
     double force() const { return push.force - pull.force; }
 };
 
-/// A piece of hair over a crease.
+/// A piece of hair that shortens, over a crease.
 class PieceOverEdge {
   public:
     PieceOverEdge(const Frozen& frozen, int p, const HairPiece& piece, const Recycled<Vec3>& node)
@@ -40,6 +40,7 @@ class PieceOverEdge {
   private:
     LineDistance line_at(double s) const;
     Shortened at(double s) const;
+    double slope(const Shortened& at) const;
     double surely_short(const Shortened& from) const;
     Shortened between(Shortened low, Shortened high) const;
 
@@ -56,28 +57,30 @@ class PieceOverEdge {
     double height_, climb_;  // over the point's own plane
 };
 
-LineDistance PieceOverEdge::line_at(double s) const {
+inline LineDistance PieceOverEdge::line_at(double s) const {
     const LineDistance d = line_.at(s);
     const double own = height_ + s * climb_, share = crease_.share;
     return {own + share * (d.z - own), climb_ + share * (d.slope - climb_), share * d.bend};
 }
 
-Shortened PieceOverEdge::at(double s) const {
+inline Shortened PieceOverEdge::at(double s) const {
     const LineDistance d = line_at(s);
-    Shortened out{.s = s, .depth = piece_.radius - d.z};
+    Shortened out{.s = s, .depth = piece_.radius - d.z, .distance = d};
     out.push = normal_force(law_, piece_.weight, piece_.radius, out.depth, 0);
     out.pull = adhesion(law_, piece_.weight, -out.depth);
-    if (piece_.compliance > 0) {
-        out.miss = s / piece_.compliance - out.force() * d.slope;
-        out.slope = 1 / piece_.compliance + (out.push.stiffness + out.pull.stiffness) * d.slope * d.slope -
-                    out.force() * d.bend;
-    }
+    out.miss = s / piece_.compliance - out.force() * d.slope;
     return out;
+}
+
+// ∂miss/∂s
+inline double PieceOverEdge::slope(const Shortened& at) const {
+    const LineDistance& d = at.distance;
+    return 1 / piece_.compliance + (at.push.stiffness + at.pull.stiffness) * d.slope * d.slope - at.force() * d.bend;
 }
 
 // How much less the piece may be shortened than at `from` with a miss that is surely positive: the force along the hair
 // is at most that of the contact and of the film, and the contact grows no faster than hair goes along itself.
-double PieceOverEdge::surely_short(const Shortened& from) const {
+inline double PieceOverEdge::surely_short(const Shortened& from) const {
     constexpr double kRounding = 1e-9;
     const double along = glm::length(inwards), pull = law_.adhesion * piece_.weight;
     const double spare = from.s / piece_.compliance - (from.push.force + pull) * along;
@@ -88,7 +91,7 @@ double PieceOverEdge::surely_short(const Shortened& from) const {
 // Bracketed from outside, where hair that comes from its root meets the surface.
 Shortened PieceOverEdge::stand() const {
     const Shortened whole = at(0);
-    if (piece_.compliance <= 0 || whole.push.force <= 0) return whole;
+    if (whole.push.force <= 0) return whole;
     constexpr int kSteps = 12;
     const double step = 3 * law_.end_compliance / kSteps;
     Shortened high = at(kSteps * step);
@@ -120,7 +123,7 @@ Shortened PieceOverEdge::between(Shortened low, Shortened high) const {
         mid = at(s);
         if (std::abs(mid.miss) < 1e-12 * (1 + mid.push.force)) break;
         (mid.miss > 0 ? high : low) = mid;
-        s = mid.s - mid.miss / mid.slope;
+        s = mid.s - mid.miss / slope(mid);
         if (!(s > low.s && s < high.s)) s = 0.5 * (low.s + high.s);
     }
     return mid;
@@ -143,24 +146,123 @@ void add_piece(const HairPiece& piece, const PieceOverEdge& hair, const Shortene
         const Sym3 mixed = 2 * st.s * xx + -2 / total * symmetric(ci, b);
         xx += -1 / total * outer(ci);
         add_slope(at, at.d, st.s * slope, out);
-        add_curvature(at, mixed, out, [&](int k, int l) { return 0.5 * (at.w[k] * at.d[l] + at.d[k] * at.w[l]); });
-        add_curvature(at, ii, out, [&](int k, int l) { return at.d[k] * at.d[l]; });
+        add_slope(at, at.w, slope, out);
+        for_pairs(at, out, [&](int k, int l, Sym3 sum) {
+            sum += 0.5 * (at.w[k] * at.d[l] + at.d[k] * at.w[l]) * mixed;
+            sum += at.d[k] * at.d[l] * ii;
+            return sum += at.w[k] * at.w[l] * xx;
+        });
+        return;
     }
     add_potential(at, slope, xx, out);
 }
+
+/// What presses on the pieces of one point that stand on one face, over the same nodes. It is along one normal, so that
+/// its derivatives are sums of numbers.
+class OnFace {
+  public:
+    /// Adds a piece with the potential's derivatives over its height.
+    void add(const Stencil& at, double slope, double curvature) {
+        const double* w = at.w;
+        for (int k = 0; k < 3; ++k) {
+            slope_[k] += w[k] * slope;
+            own_[k] += w[k] * w[k] * curvature;
+        }
+        next_[0] += w[0] * w[1] * curvature;
+        next_[1] += w[1] * w[2] * curvature;
+        far_ += w[0] * w[2] * curvature;
+        empty_ = false;
+    }
+
+    /// Adds the sums to the nodes of `at`; `gradient` is that of the height.
+    void add_to(const Stencil& at, const Vec3& gradient, Evaluation& out) const {
+        if (empty_) return;
+        const Sym3 square = outer(gradient);
+        add_slope(at, slope_, gradient, out);
+        add_curvature(at, square, out, [&](int k, int l) { return l == k ? own_[k] : l == k + 1 ? next_[k] : far_; });
+    }
+
+  private:
+    double slope_[3] = {0, 0, 0}, own_[3] = {0, 0, 0}, next_[2] = {0, 0}, far_ = 0;
+    bool empty_ = true;
+};
+
+/// Pieces of one contact point that keep their length, over both faces of its crease.
+class RigidPieces {
+  public:
+    RigidPieces(const Frozen& frozen, int p, bool derivatives, Evaluation& out)
+        : law_(*frozen.law),
+          obstacle_(frozen.obstacles[p]),
+          crease_(frozen.crease[p]),
+          point_(p),
+          derivatives_(derivatives),
+          out_(out) {}
+
+    /// Returns the potential of a piece.
+    double add(const HairPiece& piece) {
+        const Vec3 x = piece.at.at(out_.node);
+        const EdgeHeight over = edge_height(crease_.edge, x);
+        const double own = glm::dot(x - obstacle_.origin, obstacle_.normal);
+        const double depth = piece.radius - (own + crease_.share * (over.z - own));
+        const NormalForce push = normal_force(law_, piece.weight, piece.radius, depth, 0);
+        const NormalForce pull = adhesion(law_, piece.weight, -depth);
+        if (push.force == pull.force) return 0;
+        const double energy = push.energy + pull.energy;
+        if (!derivatives_) return energy;
+        out_.normal[point_] += push.force;
+        const double slope = pull.force - push.force, curvature = push.stiffness + pull.stiffness;
+        if (over.face < 0) {
+            const Distance d = distance_of(obstacle_, crease_, law_.edge, x);
+            add_potential(piece.at, slope * d.slope, curvature * outer(d.slope) + slope * d.bend * outer(d.across),
+                          out_);
+            return energy;
+        }
+        if (nodes_ && nodes_->first != piece.at.first) flush();
+        nodes_ = &piece.at;
+        face_[over.face].add(piece.at, slope, curvature);
+        return energy;
+    }
+
+    /// Adds what is summed to the nodes.
+    void flush() {
+        if (!nodes_) return;
+        for (int i = 0; i < 2; ++i) {
+            const Vec3& n = crease_.edge.wedge.normal[i];
+            face_[i].add_to(*nodes_, obstacle_.normal + crease_.share * (n - obstacle_.normal), out_);
+            face_[i] = {};
+        }
+    }
+
+  private:
+    const Law& law_;
+    const Obstacle& obstacle_;
+    const Crease& crease_;
+    int point_;
+    bool derivatives_;
+    Evaluation& out_;
+    OnFace face_[2];
+    const Stencil* nodes_ = nullptr;
+};
 
 }  // namespace
 
 bool is_clear_of_edge(const Frozen& frozen, int p, const Vec3& x) {
     const Obstacle& o = frozen.obstacles[p];
+    const Crease& crease = frozen.crease[p];
+    const double own = glm::dot(x - o.origin, o.normal), z = own + crease.share * (edge_height(crease.edge, x).z - own);
     const double length = frozen.rod->length[frozen.place[p].node] / frozen.law->points_per_segment;
-    return distance_of(o, frozen.crease[p], frozen.law->edge, x).z - o.radius >= frozen.law->adhesion_range + length;
+    return z - o.radius >= frozen.law->adhesion_range + length;
 }
 
 double add_hair_at_edge(const Frozen& frozen, int p, bool derivatives, Evaluation& out) {
     double energy = 0;
+    RigidPieces rigid(frozen, p, derivatives, out);
     for (const HairPiece& piece : frozen.piece[p]) {
         if (piece.weight <= 0) continue;
+        if (piece.compliance <= 0) {
+            energy += rigid.add(piece);
+            continue;
+        }
         const PieceOverEdge hair(frozen, p, piece, out.node);
         const Shortened st = hair.stand();
         if (st.push.force == st.pull.force) continue;
@@ -170,6 +272,7 @@ double add_hair_at_edge(const Frozen& frozen, int p, bool derivatives, Evaluatio
         out.normal[p] += st.push.force;
         add_piece(piece, hair, st, out);
     }
+    rigid.flush();
     return energy;
 }
 
@@ -178,13 +281,21 @@ Obstacle mean_plane_at_edge(const Frozen& frozen, int p, const Recycled<Vec3>& n
     Vec3 normal{0}, origin{0};
     for (const HairPiece& piece : frozen.piece[p]) {
         if (piece.weight <= 0) continue;
-        const PieceOverEdge hair(frozen, p, piece, node);
-        const Shortened st = hair.stand();
-        if (st.push.force <= 0) continue;
-        const Distance d = hair.distance_at(st.s);
-        total += st.push.force;
-        normal += st.push.force * d.slope;
-        origin += st.push.force * (hair.x + st.s * hair.inwards - d.z * d.slope);
+        Vec3 x = piece.at.at(node);
+        double force = 0;
+        if (piece.compliance > 0) {
+            const PieceOverEdge hair(frozen, p, piece, node);
+            const Shortened st = hair.stand();
+            x += st.s * hair.inwards;
+            force = st.push.force;
+        }
+        const Distance d = distance_of(frozen.obstacles[p], frozen.crease[p], frozen.law->edge, x);
+        if (piece.compliance <= 0)
+            force = normal_force(*frozen.law, piece.weight, piece.radius, piece.radius - d.z, 0).force;
+        if (force <= 0) continue;
+        total += force;
+        normal += force * d.slope;
+        origin += force * (x - d.z * d.slope);
     }
     const double mean = glm::length(normal);
     return mean > 1e-6 * total && total > 0 ? Obstacle{origin / total, normal / mean, here.radius} : here;

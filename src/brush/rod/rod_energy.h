@@ -174,12 +174,18 @@ struct Evaluation {
     Recycled<JointForce> joint;  ///< [n]
 };
 
+/// Replaces each second derivative m over nodes k and l of a stencil by f(k, l, m).
+template <class F>
+void for_pairs(const Stencil& at, Evaluation& out, const F& f) {
+    for (int k = 0; k < at.count; ++k) out.curvature[at.first + k] = f(k, k, out.curvature[at.first + k]);
+    for (int k = 0; k + 1 < at.count; ++k) out.coupling[at.first + k] = f(k, k + 1, out.coupling[at.first + k]);
+    if (at.count > 2) out.across[at.first] = f(0, 2, out.across[at.first]);
+}
+
 /// Adds curvature · f(k, l) to the second derivatives over nodes k and l of a stencil.
 template <class F>
 void add_curvature(const Stencil& at, const Sym3& curvature, Evaluation& out, const F& f) {
-    for (int k = 0; k < at.count; ++k) out.curvature[at.first + k] += f(k, k) * curvature;
-    for (int k = 0; k + 1 < at.count; ++k) out.coupling[at.first + k] += f(k, k + 1) * curvature;
-    if (at.count > 2) out.across[at.first] += f(0, 2) * curvature;
+    for_pairs(at, out, [&](int k, int l, Sym3 sum) { return sum += f(k, l) * curvature; });
 }
 
 inline void add_slope(const Stencil& at, const double* w, const Vec3& slope, Evaluation& out) {

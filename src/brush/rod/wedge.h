@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cmath>
+
 #include "core/geometry/types.h"
 
 /// \file
 /// Distance from a surface of two planes with its edge or corner rounded. Used by the rod's contact and by
-/// `height_over`.
+/// `height_over`. Its functions are inline: the rod's contact calls them for every piece of hair near an edge.
 namespace tuft::brush {
 
 /// Distance of a point from the surface, negative inside, and its derivatives. Any unit of length.
@@ -35,7 +37,46 @@ struct RoundedEdge {
     Vec3 ridge{0};         ///< unit, along the edge
 };
 RoundedEdge round_edge(const Wedge& wedge, double rounding);
-Distance edge_distance(const RoundedEdge& edge, const Vec3& x);
+
+/// From the ridge of the planes moved in by ρ, a point lies at u n0 + v n1 across the edge. It is in front of the edge
+/// where both are positive, `far` from the ridge.
+struct InFrontOfEdge {
+    double u = 0, v = 0, far = 0;  ///< far: 0 where it is not
+
+    /// `z0`, `z1`: heights over both planes.
+    InFrontOfEdge(const RoundedEdge& e, double z0, double z1) {
+        const double in0 = z0 + e.rounding, in1 = z1 + e.rounding;
+        u = (in0 - e.c * in1) * e.per_apart;
+        v = (in1 - e.c * in0) * e.per_apart;
+        if (u > 0 && v > 0) far = std::sqrt(u * u + v * v + 2 * e.c * u * v);
+        if (far <= 1e-12) far = 0;
+    }
+};
+
+inline Distance edge_distance(const RoundedEdge& e, const Vec3& x) {
+    const Wedge& w = e.wedge;
+    const double z0 = glm::dot(x - w.origin[0], w.normal[0]), z1 = glm::dot(x - w.origin[1], w.normal[1]);
+    const InFrontOfEdge f(e, z0, z1);
+    if (f.far > 0) {
+        const Vec3 n = (f.u * w.normal[0] + f.v * w.normal[1]) / f.far;
+        return {f.far - e.rounding, n, 1 / f.far, glm::cross(e.ridge, n)};
+    }
+    return z0 > z1 ? Distance{z0, w.normal[0]} : Distance{z1, w.normal[1]};
+}
+
+/// Height of a point over an edge: the z of `edge_distance`, and the plane whose distance it is; -1: in front of the
+/// edge.
+struct EdgeHeight {
+    double z = 0;
+    int face = -1;
+};
+inline EdgeHeight edge_height(const RoundedEdge& e, const Vec3& x) {
+    const Wedge& w = e.wedge;
+    const double z0 = glm::dot(x - w.origin[0], w.normal[0]), z1 = glm::dot(x - w.origin[1], w.normal[1]);
+    const InFrontOfEdge f(e, z0, z1);
+    if (f.far > 0) return {f.far - e.rounding, -1};
+    return z0 > z1 ? EdgeHeight{z0, 0} : EdgeHeight{z1, 1};
+}
 
 /// Distance of a line x + s d from an edge, as a function of s.
 struct LineDistance {
@@ -46,8 +87,22 @@ struct LineDistance {
 class LineOverEdge {
   public:
     /// `direction` may have any length.
-    LineOverEdge(const RoundedEdge& edge, const Vec3& x, const Vec3& direction);
-    LineDistance at(double s) const;
+    LineOverEdge(const RoundedEdge& edge, const Vec3& x, const Vec3& direction) : edge_(edge) {
+        for (int i = 0; i < 2; ++i) {
+            height_[i] = glm::dot(x - edge.wedge.origin[i], edge.wedge.normal[i]);
+            climb_[i] = glm::dot(direction, edge.wedge.normal[i]);
+        }
+        across_ = (climb_[0] * climb_[0] + climb_[1] * climb_[1] - 2 * edge.c * climb_[0] * climb_[1]) * edge.per_apart;
+    }
+    LineDistance at(double s) const {
+        const double z0 = height_[0] + s * climb_[0], z1 = height_[1] + s * climb_[1];
+        const InFrontOfEdge f(edge_, z0, z1);
+        if (f.far > 0) {
+            const double slope = (f.u * climb_[0] + f.v * climb_[1]) / f.far;
+            return {f.far - edge_.rounding, slope, (across_ - slope * slope) / f.far};
+        }
+        return z0 > z1 ? LineDistance{z0, climb_[0], 0} : LineDistance{z1, climb_[1], 0};
+    }
 
   private:
     const RoundedEdge& edge_;
