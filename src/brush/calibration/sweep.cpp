@@ -9,6 +9,7 @@
 #include "brush/tuft/tuft.h"
 #include "core/error.h"
 #include "core/files/files.h"
+#include "core/system/parallel.h"
 #include "core/text/units.h"
 
 namespace tuft::brush {
@@ -159,9 +160,10 @@ SteadyTuft sweep_at(const Preset& preset, double depth) {
 }
 
 std::vector<SweepRow> sweep_depth(const Preset& preset, std::span<const double> depths) {
-    std::vector<SweepRow> rows;
-    rows.reserve(depths.size());
-    for (const double depth : depths) rows.push_back(sweep_at(preset, depth).row);
+    std::vector<SweepRow> rows(depths.size());
+    parallel_for(depths.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) rows[i] = sweep_at(preset, depths[i]).row;
+    });
     return rows;
 }
 

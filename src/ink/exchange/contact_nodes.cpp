@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/system/recycled.h"
+
 namespace tuft::ink {
 namespace {
 
@@ -44,7 +46,7 @@ int nearest_with_hair(const std::array<double, kNodes>& sums, int node, int asid
 NodeContact node_contact(const Reservoir& tuft, const ContactGrid& grid, std::span<const HairSample> samples,
                          const ContactCells& contact, NodesWithoutHair rule) {
     const std::size_t cells = tuft.n_cells(), n = tuft.content.size();
-    std::vector<double> weight(kNodes * n, 0);
+    Recycled<double> weight(kNodes * n, 0);
     std::array<double, kNodes> sums{};
     for (const HairSample& s : samples) {
         const Vec2 at = glm::clamp(grid.at(s.at), Vec2{0}, Vec2{kAlong - 1, kAcross - 1});
@@ -67,11 +69,15 @@ NodeContact node_contact(const Reservoir& tuft, const ContactGrid& grid, std::sp
         const int from = sums[node] > 0
                              ? node
                              : nearest_with_hair(sums, node, rule == NodesWithoutHair::column ? kAlong * kAlong : 1);
-        for (std::uint32_t i = 0; i < n; ++i) {
-            const double part = from >= 0             ? weight[static_cast<std::size_t>(from) * n + i] / sums[from]
-                                : contact.size() == n ? static_cast<double>(contact[i])
-                                                      : tuft.cell_capacity[i] / tuft.capacity;
+        const auto add = [&](std::uint32_t i, double part) {
             if (part > 0) out.shares.push_back({i, static_cast<float>(part)});
+        };
+        const double* of_node = from >= 0 ? weight.data() + static_cast<std::size_t>(from) * n : nullptr;
+        for (std::uint32_t i = 0; i < n; ++i) {
+            if (!of_node)
+                add(i, contact.size() == n ? static_cast<double>(contact[i]) : tuft.cell_capacity[i] / tuft.capacity);
+            else if (of_node[i] > 0)  // of few cells: hair of a node is in reach of it
+                add(i, of_node[i] / sums[from]);
         }
         out.begin[node + 1] = static_cast<std::uint32_t>(out.shares.size());
     }

@@ -27,7 +27,11 @@ struct StampExposure::Scratch {
     ink::HatBasis basis;
 };
 
+// The tile holds what the last stamp left in its place.
 void StampExposure::expose_tile(Tile& tile, const Stamp& stamp, const footprint::TileJob& job, Scratch& scratch) {
+    tile.slot = kNone;
+    tile.areas = {};
+    tile.given = tile.taken = {};
     if (!footprint::evaluate_tile(target_.texels(), plan_, job, scratch.unpacked, tile.exposure)) return;
     const MaskTexels* mask = target_.mask();
     if (mask && mask->none(job.slot)) return;
@@ -50,10 +54,9 @@ ink::NodeAreas StampExposure::expose(const Stamp& stamp) {
                                       joined_motion(stamp, target_.texels().texel_size), stamp_options(options_, stamp),
                                       scratch, std::move(plan_));
     }
-    tiles_.clear();
+    tiles_.resize(plan_.tiles.size());
     if (plan_.empty()) return {};
     piecewise_ = footprint::choose_mode(plan_, piecewise_, options_);
-    tiles_.resize(plan_.tiles.size());
     if (stamp.by_hair) target_.prepare_grain();
     parallel_for(tiles_.size(), 4, [&](std::size_t begin, std::size_t end) {
         Scratch scratch;
