@@ -85,7 +85,7 @@ TEST_F(Batch, PaintsTheBitsOfOneStrokeAfterTheOther) {
     Document alone(model());
     std::vector<StrokeReport> expected;
     for (const JournalEntry& entry : entries) expected.push_back(alone.paint(entry));
-    for (const int threads : {1, 2, 4}) {
+    for (const int threads : {1, 2, 5}) {
         set_thread_count(threads);
         Document p(model());
         std::vector<StrokeReport> reports;

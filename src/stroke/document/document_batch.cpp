@@ -46,6 +46,9 @@ struct Document::BatchStroke {
 namespace {
 
 constexpr std::size_t kStrokesPerThread = 32;
+// Strokes that wait for each other's tiles keep so many threads at work. With more, footprints are computed before the
+// ink of the strokes below is there, those that dry hair will not use, too.
+constexpr int kFewThreads = 4;
 constexpr std::size_t kSamplesPerThread = 100'000;  // of a batch: bounds the poses that are held
 
 // Ink of a stamp is deposited up to 8 stamps later (StampBatch).
@@ -197,7 +200,7 @@ void Document::paint_step(BatchStroke& stroke, std::size_t step, const ProgressF
     if (step == 0) {
         begin_path(session, stroke.path, progress);
         if (std::unique_ptr<StrokeForecast> forecast = session.forecast(poses)) {
-            forecast->compute();
+            forecast->compute(thread_count() > kFewThreads);
             session.use(std::move(forecast));
         }
         return;

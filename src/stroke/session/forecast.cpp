@@ -70,8 +70,8 @@ void StrokeForecast::compute_part(std::size_t k, bool closes) {
     }
 }
 
-void StrokeForecast::compute() {
-    for (std::size_t k = 0; k < parts_.size() && !hair_.split; ++k) compute_part(k, true);
+void StrokeForecast::compute(bool closes) {
+    for (std::size_t k = 0; k < parts_.size() && !hair_.split; ++k) compute_part(k, closes);
 }
 
 void StrokeForecast::compute_ahead() {

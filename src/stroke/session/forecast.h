@@ -44,8 +44,9 @@ class StrokeForecast {
     StrokeForecast(const StrokeForecast&) = delete;
     StrokeForecast& operator=(const StrokeForecast&) = delete;
 
-    /// Computes all poses, with footprints. Cost: that of bending and outlines at every pose. Once, before `next`.
-    void compute();
+    /// Computes all poses, with `closes` and their footprints of wet hair, which hair that dries on its way does not
+    /// need from there on. Cost: that of bending at every pose, and of outlines. Once, before `next`.
+    void compute(bool closes);
     /// Instead of `compute`: lets another thread compute poses while `next` returns those before, some 100 ahead.
     void compute_ahead();
     /// Instead of both: appends poses to the path, and lets another thread compute them all while `next` returns those
