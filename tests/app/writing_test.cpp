@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <set>
 
 #include "app/document/first_scale.h"
 #include "app/document/snapping.h"
@@ -24,8 +25,8 @@ TEST(Writing, LiesWithItsMiddleAtTheCursorTurnedAndScaled) {
     const mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(source_folder() + "/models/sheet.ply")).mesh;
     const mesh::SurfaceQuery query(mesh);
     Writing w = cross();
-    EXPECT_NEAR(w.width, 0.040, 1e-9);
-    EXPECT_NEAR(w.height, 0.020, 1e-9);
+    EXPECT_NEAR(w.form().width, 0.040, 1e-9);
+    EXPECT_NEAR(w.form().height, 0.020, 1e-9);
     w.scale = 1.5;
     w.turn = 0.5;
     constexpr double kRounding = 2e-6;  // metres: the turn is 0.01 degrees off at most, on 15 mm
@@ -76,8 +77,8 @@ TEST(Writing, ComesAtItsOwnSizeUnlessNoSideOfTheModelHasRoomForItOrItIsASpeck) {
     const Box bowl{{-0.075, -0.075, 0}, {0.075, 0.075, 0.067}};
     const auto comes = [&](double width, double height) {
         Writing w;
-        w.width = width;
-        w.height = height;
+        w.lines.width = width;
+        w.lines.height = height;
         return width * first_scale(w, bowl);
     };
     constexpr double kRounding = 1e-15;  // metres
@@ -90,7 +91,7 @@ TEST(Writing, ComesAtItsOwnSizeUnlessNoSideOfTheModelHasRoomForItOrItIsASpeck) {
 
 TEST(Writing, CharactersWithPlacesOfTheirOwnStandSideBySide) {
     const Writing w = read_writing(source_folder() + "/samples/strokes/man-bu-ren-sheng.inkml");
-    EXPECT_GT(w.width, 3 * w.height);
+    EXPECT_GT(w.form().width, 3 * w.form().height);
 }
 
 TEST(Writing, OptionsOfAnUprightPlaceHaveNoNegativeZero) {
@@ -127,15 +128,50 @@ class WritingOnModel : public BothPrograms {
                                "d='M4 4 A9 9 0 0 0 4 20 Z'/><g fill='none' stroke='black' stroke-width='1'><path "
                                "d='M10 3 C20 3 26 9 26 19'/><path d='M10 12 l12 9'/></g></svg>";
         Writing w = read_writing(file);
-        w.scale = width / w.width;
+        w.scale = width / w.form().width;
         return w;
     }
 };
 
 Writing roundel(double width) {
     Writing w = read_writing(source_folder() + "/samples/strokes/roundel.svg");
-    w.scale = width / w.width;
+    w.scale = width / w.form().width;
     return w;
+}
+
+/// Three colours, one of them translucent and one under a gradient to another: nearer to each other than to the
+/// pigments, so that they are mixed otherwise together than one after the other.
+std::string flag(const std::string& folder) {
+    const std::string file = folder + "/flag.svg";
+    std::ofstream(file) << "<svg xmlns='http://www.w3.org/2000/svg' width='60mm' viewBox='0 0 60 30'><linearGradient "
+                           "id='g'><stop stop-color='#1b6f5a'/><stop offset='1' stop-color='#d3ab4c'/></linearGradient>"
+                           "<path fill='#bd3b25' d='M0 0 H20 V30 H0 Z'/><path fill='url(#g)' d='M20 0 H40 V30 H20 Z'/>"
+                           "<circle fill='#1b6f5a' fill-opacity='0.6' cx='51' cy='15' r='9'/><path fill='none' "
+                           "stroke='#d3ab4c' stroke-width='3' d='M4 26 C20 10 40 30 56 4'/></svg>";
+    return file;
+}
+
+TEST(Writing, OfSeveralColoursComesInThemAndOfOneInTheChosenInk) {
+    const std::string file = flag(testing::TempDir());
+    Writing w = read_writing(file);
+    EXPECT_TRUE(w.in_colours());
+    EXPECT_NEAR(w.form().width, 0.060, 1e-9);
+    const mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(source_folder() + "/models/sheet.ply")).mesh;
+    const mesh::SurfaceQuery query(mesh);
+    const stroke::Placement at = place_writing(w, query, mesh.bounds.centre(), {0, 0, 1}, {1, 0, 0}, {0, 0, 1});
+    // Its outlines are seen before it is placed: three shapes and a stroke.
+    EXPECT_EQ(preview_lines(query, w, at).size(), 4u);
+    EXPECT_NE(place_words(w, at).find("--areas mask"), std::string::npos);
+    w.own_ink = false;
+    EXPECT_NE(place_words(w, at).find("--areas brush"), std::string::npos);
+    std::ofstream(file) << "<svg xmlns='http://www.w3.org/2000/svg' width='60mm' viewBox='0 0 60 30'><path "
+                           "fill='#bd3b25' d='M0 0 H20 V30 H0 Z'/></svg>";
+    w = read_writing(file);
+    EXPECT_FALSE(w.in_colours());
+    EXPECT_FALSE(w.areas.traces.empty()) << "it can be painted in its colour";
+    std::filesystem::remove(file);
+    EXPECT_TRUE(cross().areas.traces.empty()) << "black alone";
+    EXPECT_FALSE(read_writing(source_folder() + "/samples/strokes/man-bu-ren-sheng.inkml").own_ink) << "one ink";
 }
 
 const WritingHand kHand{"wolf-medium", "carbon"};
@@ -156,6 +192,24 @@ TEST_F(WritingOnModel, MirroredTurnedAndSmallInAPlateItIsTheSame) {
         by_studio("plate.ply", w, {0.01, 0.02, 1}, {0, 0, -1}, {0.8, 0.6, 0}, {"goat-medium", "cinnabar"});
     expect_same(studio, by_program("plate.ply", w, studio.words, "--brush goat-medium --fit-brush --ink cinnabar"));
     EXPECT_NE(studio.words.find("--place-mirror"), std::string::npos);
+}
+
+TEST_F(WritingOnModel, InItsColoursItIsTheSame) {
+    Writing w = read_writing(flag(folder_));
+    w.scale = 0.8;
+    w.turn = 0.3;
+    w.mirrored = true;
+    const Painted studio = by_studio("bowl.ply", w, {0.004, -1, 0.03}, {0, 1, 0}, {1, 0.1, 0}, kHand);
+    const Painted program = by_program("bowl.ply", w, studio.words, "");
+    expect_same(studio, program);
+    ASSERT_EQ(studio.journal.size(), 4u);
+    std::set<std::string> inks;
+    for (const stroke::JournalEntry& entry : studio.journal)
+        for (const std::string& ink : stroke::inks_of(entry)) inks.insert(ink);
+    for (const char* ink : {"#1b6f5a", "#bd3b25", "#d3ab4c"}) EXPECT_TRUE(inks.contains(ink)) << ink;
+    // The project holds the inks as they were mixed: painted again it is the same.
+    const nlohmann::json again = test::tuft("replay " + folder_ + "/studio.tuft", folder_ + "/out.json");
+    EXPECT_EQ(again["canvas_hash"], studio.hash);
 }
 
 TEST_F(WritingOnModel, OnACarsDoorItIsTheSame) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/error.h"
 #include "core/text/units.h"
@@ -26,7 +27,7 @@ Vec3 rounded_direction(const Vec3& v) {
 }
 
 double width_mm(const Writing& w) {
-    return rounded(w.scale * w.width / kMillimetre, kPlaceStep);
+    return rounded(w.scale * w.form().width / kMillimetre, kPlaceStep);
 }
 
 std::vector<stroke::StrokeSamples*> pointers(std::vector<stroke::RecordedStroke>& traces) {
@@ -41,22 +42,74 @@ bool belongs_to_brush(const stroke::Preparation& preparation) {
     return std::holds_alternative<stroke::BrushAction>(preparation) || std::holds_alternative<stroke::Dry>(preparation);
 }
 
-}  // namespace
+bool is_svg(const std::filesystem::path& file) {
+    return file.extension() == ".svg";
+}
 
-Writing read_writing(const std::filesystem::path& file) {
-    Writing out{.file = file};
+std::vector<stroke::FlatArea*> areas_of(std::vector<stroke::RecordedStroke>& traces) {
+    std::vector<stroke::FlatArea*> all;
+    for (stroke::RecordedStroke& trace : traces)
+        for (stroke::Preparation& one : trace.before)
+            if (auto* fill = std::get_if<stroke::Fill>(&one); fill && fill->area) all.push_back(&*fill->area);
+    return all;
+}
+
+void set_size(WritingForm& form, const Box& box) {
+    form.centre = Vec2(box.centre());
+    form.width = stroke::width_of(box);
+    form.height = box.size().y;
+}
+
+WritingForm line_form(const std::filesystem::path& file) {
+    WritingForm out;
     out.traces = io::read_strokes(file, {.note = [&](const Message& line) { out.notes.push_back(line); }});
     std::erase_if(out.traces,
                   [](const stroke::RecordedStroke& t) { return !t.flat || t.on_palette || t.samples.empty(); });
     if (out.traces.empty())
         throw Error(file.string(), "its strokes lie in space already; only flat writing can be placed");
     const std::vector<stroke::StrokeSamples*> all = pointers(out.traces);
-    if (out.traces.front().placed) out.mapping = out.traces.front().placement.mapping;
     stroke::arrange_parts(all);
-    const Box box = stroke::extent_of(all);
-    out.centre = Vec2(box.centre());
-    out.width = stroke::width_of(box);
-    out.height = box.size().y;
+    set_size(out, stroke::extent_of(all));
+    return out;
+}
+
+// Nothing of a drawing in black alone.
+WritingForm area_form(const std::filesystem::path& file) {
+    WritingForm out;
+    out.traces = io::read_strokes(
+        file, io::SvgOptions{.painting = io::SvgPainting::automatic,
+                             .ink = {.note = [&](const Message& line) { out.notes.push_back(line); }}});
+    std::erase_if(out.traces, [](const stroke::RecordedStroke& t) { return t.before.empty(); });
+    const std::vector<stroke::FlatArea*> areas = areas_of(out.traces);
+    if (areas.empty()) return {};
+    Box box;
+    for (const stroke::FlatArea* area : areas) stroke::add_extent(box, *area);
+    set_size(out, box);
+    return out;
+}
+
+std::size_t count_inks(Writing& w) {
+    std::set<std::string> inks;
+    for (const stroke::RecordedStroke& trace : w.lines.traces) inks.insert(trace.ink);
+    for (const stroke::FlatArea* area : areas_of(w.areas.traces))
+        for (const stroke::AreaStop& stop : area->stops) inks.insert(stop.ink);
+    inks.erase("");
+    return inks.size();
+}
+
+}  // namespace
+
+Writing read_writing(const std::filesystem::path& file) {
+    Writing out{.file = file};
+    if (is_svg(file)) out.areas = area_form(file);
+    try {
+        out.lines = line_form(file);
+    } catch (const Error&) {
+        if (out.areas.traces.empty()) throw;  // a picture has no lines
+    }
+    if (!out.lines.traces.empty() && out.lines.traces.front().placed)
+        out.mapping = out.lines.traces.front().placement.mapping;
+    out.own_ink = out.lines.traces.empty() || count_inks(out) > 1;
     return out;
 }
 
@@ -94,7 +147,8 @@ stroke::Placement place_writing(const Writing& w, const mesh::SurfaceQuery& quer
 }
 
 double painted_scale(const Writing& w) {
-    return w.width > 0 && width_mm(w) > 0 ? width_mm(w) * kMillimetre / w.width : w.scale;
+    const double width = w.form().width;
+    return width > 0 && width_mm(w) > 0 ? width_mm(w) * kMillimetre / width : w.scale;
 }
 
 namespace {
@@ -123,7 +177,7 @@ std::string place_words(const stroke::Placement& p) {
 std::string place_words(const Writing& w, const stroke::Placement& p) {
     std::string words = place_words(p, w.mapping, fmt::format(" --place-width {:.3f}", width_mm(w)));
     if (w.mirrored) words += " --place-mirror";
-    if (w.file.extension() == ".svg") words += " --areas brush";
+    if (is_svg(w.file)) words += w.in_colours() ? " --areas mask" : " --areas brush";
     return words;
 }
 
@@ -141,13 +195,16 @@ std::string quoted(const std::string& text) {
 }
 
 bool has_widths(const Writing& w) {
-    return std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return t.line_width > 0 && !t.pressed; });
+    return std::ranges::any_of(w.form().traces, [](const auto& t) { return t.line_width > 0 && !t.pressed; });
 }
 
 PlacedWriting placed_writing(const Writing& w, const stroke::Placement& placement, const WritingHand& hand) {
-    std::vector<stroke::RecordedStroke> traces = w.traces;
+    const WritingForm& form = w.form();
+    std::vector<stroke::RecordedStroke> traces = form.traces;
+    for (stroke::FlatArea* area : areas_of(traces)) area->placement.mapping = w.mapping;
     for (stroke::RecordedStroke& trace : traces) {
-        std::erase_if(trace.before, [](const stroke::Preparation& p) { return !belongs_to_brush(p); });
+        if (!w.in_colours())
+            std::erase_if(trace.before, [](const stroke::Preparation& p) { return !belongs_to_brush(p); });
         trace.placement.mapping = w.mapping;
         trace.names = {};
         if (!w.own_width) trace.line_width = 0;
@@ -164,20 +221,40 @@ PlacedWriting placed_writing(const Writing& w, const stroke::Placement& placemen
     options.other_ink = hand.ink;
     stroke::append_entries(out.entries, std::move(traces), options);
     const std::vector<stroke::StrokeSamples*> drawing = stroke::drawing_in(out.entries, true);
-    stroke::place_drawing(drawing, {placement, w.centre, out.scale, w.mirrored});
+    const stroke::DrawingPlace place{placement, form.centre, out.scale, w.mirrored};
+    stroke::place_drawing(drawing, place);
+    stroke::place_areas(stroke::areas_in(out.entries, true), place);
     const Box box = stroke::extent_of(drawing);
     out.extent = std::max(box.size().x, box.size().y);
     return out;
+}
+
+std::vector<std::vector<Vec2>> drawn_lines(const WritingForm& form) {
+    std::vector<std::vector<Vec2>> lines;
+    for (const stroke::RecordedStroke& trace : form.traces) {
+        if (!trace.samples.empty()) {
+            std::vector<Vec2>& line = lines.emplace_back();
+            for (const stroke::StrokeSample& s : trace.samples) line.emplace_back(s.position);
+        }
+        for (const stroke::Preparation& one : trace.before)
+            if (const auto* fill = std::get_if<stroke::Fill>(&one); fill && fill->area)
+                for (const std::vector<Vec2>& ring : fill->area->rings) {
+                    if (ring.empty()) continue;
+                    lines.push_back(ring);
+                    lines.back().push_back(ring.front());
+                }
+    }
+    return lines;
 }
 
 std::vector<std::vector<PreviewPoint>> preview_lines(const mesh::SurfaceQuery& query, const Writing& w,
                                                      const stroke::Placement& placement, std::size_t most) {
     std::vector<std::vector<Vec2>> lines;
     const double scale = painted_scale(w);
-    for (const stroke::RecordedStroke& trace : w.traces) {
+    for (const std::vector<Vec2>& drawn : drawn_lines(w.form())) {
         std::vector<Vec2>& line = lines.emplace_back();
-        for (const stroke::StrokeSample& s : trace.samples) {
-            const Vec2 p = scale * (Vec2(s.position) - w.centre);
+        for (const Vec2& at : drawn) {
+            const Vec2 p = scale * (at - w.form().centre);
             line.emplace_back(w.mirrored ? -p.x : p.x, p.y);
         }
     }

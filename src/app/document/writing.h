@@ -13,24 +13,33 @@
 /// A drawing or handwriting before it is placed on the model. Called by tools/writing_tool.h. Window thread.
 namespace tuft::app {
 
-/// A loaded drawing and how the user places it.
-struct Writing {
-    std::filesystem::path file;
+/// What is put onto the model.
+struct WritingForm {
     std::vector<stroke::RecordedStroke> traces;  ///< flat, metres, in the frame of the file
     std::vector<Message> notes;                  ///< skipped content of the file, one line each
     Vec2 centre{0};                              ///< metres, of the ink of all traces
     double width = 0, height = 0;                ///< metres, of the ink of all traces, as in the file
-    double scale = 1;                            ///< times the size in the file
-    double turn = 0;                             ///< radians, clockwise in the view
-    bool mirrored = false;                       ///< from left to right
-    stroke::SurfaceMapping mapping = stroke::SurfaceMapping::drape;
-    bool own_ink = false;   ///< uses brush and ink that the file names
-    bool own_width = true;  ///< uses the line widths of the drawing, where it has any
-
-    bool empty() const { return traces.empty(); }
 };
 
-/// Reads an InkML or SVG file. Throws `Error`, also when nothing in it is flat.
+/// A loaded drawing and how the user places it.
+struct Writing {
+    std::filesystem::path file;
+    WritingForm lines;      ///< strokes of a brush; of a picture none
+    WritingForm areas;      ///< in the colours of the file, each shape masked and filled; only of a drawing in colours
+    double scale = 1;       ///< times the size in the file
+    double turn = 0;        ///< radians, clockwise in the view
+    bool mirrored = false;  ///< from left to right
+    stroke::SurfaceMapping mapping = stroke::SurfaceMapping::drape;
+    bool own_ink = false;   ///< uses the inks that the file names: `areas` where there are any, else brush and ink
+    bool own_width = true;  ///< uses the line widths of the drawing, where it has any
+
+    bool empty() const { return lines.traces.empty() && areas.traces.empty(); }
+    bool in_colours() const { return own_ink && !areas.traces.empty(); }
+    const WritingForm& form() const { return in_colours() ? areas : lines; }
+};
+
+/// Reads an InkML or SVG file. `own_ink` is set where the file names more than one ink. Throws `Error`, also when
+/// nothing in it is flat.
 Writing read_writing(const std::filesystem::path& file);
 
 /// Returns a point of the model rounded to 0.001 mm, as options state it; metres.
@@ -56,7 +65,7 @@ stroke::Placement place_writing(const Writing& writing, const mesh::SurfaceQuery
 double painted_scale(const Writing& writing);
 
 /// Returns the options of `tuft paint` for this placement: "--place 1.000,2.000,3.000 --place-width 60.000 --place-turn
-/// 5.00"; with "--areas brush" for SVG, whose lines and areas the studio paints with the brush.
+/// 5.00"; for SVG with the "--areas" by which it is painted.
 std::string place_words(const Writing& writing, const stroke::Placement& placement);
 /// The same for anything flat: without width and areas.
 std::string place_words(const stroke::Placement& placement);
@@ -73,8 +82,8 @@ struct WritingHand {
     double pressure = 1;     ///< factor on default pressures, for lines without widths
 };
 
-/// A drawing's traces as journal entries at a placement. Brush sizes and pressures are not set yet: see
-/// `stroke::choose_brushes` and `stroke::press_to_widths`.
+/// A drawing's traces as journal entries at a placement. Not set yet are brush sizes and pressures
+/// (`stroke::choose_brushes`, `stroke::press_to_widths`) and films of areas (`stroke::mix_drawing_inks`).
 struct PlacedWriting {
     std::vector<stroke::JournalEntry> entries;
     double scale = 1;   ///< times the size in the file
@@ -83,8 +92,11 @@ struct PlacedWriting {
 };
 PlacedWriting placed_writing(const Writing& writing, const stroke::Placement& placement, const WritingHand& hand);
 
-/// Returns the drawing's lines on the surface, for a preview: one for each part of a trace that is on the surface, at
-/// most `most` samples in total.
+/// Returns the lines of a drawing and the outlines of its areas, the latter closed; metres, in the frame of the file.
+std::vector<std::vector<Vec2>> drawn_lines(const WritingForm& form);
+
+/// Returns the drawing's lines and the outlines of its areas on the surface, for a preview: one for each part that is
+/// on the surface, at most `most` samples in total.
 struct PreviewPoint {
     Vec3 position, normal;  ///< metres; unit
     bool seen = true;       ///< not occluded by the model

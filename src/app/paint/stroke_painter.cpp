@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/files/disk_cache.h"
+#include "stroke/document/drawing_inks.h"
 #include "stroke/document/fit.h"
 #include "stroke/drawing/copies.h"
 
@@ -114,6 +115,7 @@ std::vector<stroke::JournalEntry> StrokePainter::entries_of(PaintDrawing& comman
                            drawing.fit, widths_);
     stroke::redip_long_lines(drawing.entries, drawing.fit, widths_);
     stroke::press_to_widths(drawing.entries, widths_);
+    stroke::mix_drawing_inks(drawing.entries, *context_.work.document);
     return std::move(drawing.entries);
 }
 
@@ -159,7 +161,12 @@ void StrokePainter::paint_group(std::vector<stroke::JournalEntry> entries, const
     bool touched = false;
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (!shown("", static_cast<double>(i) / static_cast<double>(all.size()))) break;
-        context_.work.autosave.prepare(*context_.work.document, stroke::brush_of(all[i]), stroke::ink_of(all[i]));
+        context_.prepare(all[i]);
+        if (stroke::Fill* fill = all[i].as<stroke::Fill>()) {
+            fill->layer = context_.layer_of(settings.layer);
+            fill->mask = settings.mask;
+            touched = true;
+        }
         if (stroke::PaintStroke* stroke = all[i].as<stroke::PaintStroke>()) {
             stroke->layer = context_.layer_of(settings.layer);
             stroke->mask = settings.mask;

@@ -90,11 +90,11 @@ void writing_row(Ui& ui, Writing& w, const Row& row) {
          {stroke::SurfaceMapping::wrap, "Wrap", "Bent round the surface, into each of its grooves"},
          {stroke::SurfaceMapping::project, "Project##mapping", "Straight, as seen from before the place"}}};
     if (w.empty()) return;
-    double width = w.width * w.scale;
-    if (w.width > 0 &&
-        ui.named_slider("Width", width, {0.05 * w.width, std::max(4 * w.width, 0.3), "%.1f mm", kMillimetre},
-                        "Wheel over the model", row.width))
-        w.scale = width / w.width;
+    const double own = w.form().width;
+    double width = own * w.scale;
+    if (own > 0 && ui.named_slider("Width", width, {0.05 * own, std::max(4 * own, 0.3), "%.1f mm", kMillimetre},
+                                   "Wheel over the model", row.width))
+        w.scale = width / own;
     ImGui::SameLine(0, row.gap);
     ui.named_slider("Turn", w.turn, {-180 * kDegree, 180 * kDegree, "%.0f\xc2\xb0", kDegree},
                     "Shift and wheel over the model", row.width);

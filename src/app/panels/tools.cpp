@@ -141,14 +141,18 @@ void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
     if (w.empty()) return;
     ImGui::SameLine();
     ui.toggle("mm", tools.shows_place, "Place in millimetres");
-    for (const Message& note : w.notes) ui.note(ui.sentence(note));
+    for (const Message& note : w.form().notes) ui.note(ui.sentence(note));
     ui.toggle("Mirrored", w.mirrored);
     ImGui::SameLine();
     ui.toggle("Snap", tools.snap, "To the plane of symmetry and level with other drawings; Ctrl places it freely");
     if (tools.shows_place) place_fields(ui, tools);
     const bool names =
-        std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });
-    if (names) ui.toggle("Its brush and ink", w.own_ink, "As the file names them; strokes scale with the drawing");
+        std::ranges::any_of(w.lines.traces, [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });
+    if (!w.areas.traces.empty() && !w.lines.traces.empty())
+        ui.toggle("Its colours", w.own_ink,
+                  "Each shape masked and filled; off: in the chosen ink, by lines of a brush");
+    else if (names)
+        ui.toggle("Its brush and ink", w.own_ink, "As the file names them; strokes scale with the drawing");
     if (has_widths(w)) ui.toggle("Its line widths", w.own_width, "The brush is taken in the size that draws them");
 }
 

@@ -20,7 +20,7 @@ void open_writing(Session& s, const fs::path& path) {
     try {
         show_message(s.status, "");
         s.tools.writing = read_writing(path);
-        if (const auto& lost = s.tools.writing.notes; !lost.empty())
+        if (const auto& lost = s.tools.writing.form().notes; !lost.empty())
             show_message(s.status, Message("{}: {}", path.filename().string(), join(lost)));
         s.tools.active = Tool::writing;
         s.tools.writing.scale = first_scale(s.tools.writing, s.paint_thread->model().mesh->bounds);

@@ -99,7 +99,7 @@ constexpr Setting kToolSettings[] = {
      }},
     {"writing-width",
      [](Session& s, const SettingValue& v) {
-         s.tools.writing.scale = v.number * kMillimetre / std::max(1e-6, s.tools.writing.width);
+         s.tools.writing.scale = v.number * kMillimetre / std::max(1e-6, s.tools.writing.form().width);
      }},
     {"writing-turn", [](Session& s, const SettingValue& v) { s.tools.writing.turn = -v.number * kDegree; }},
     {"writing-mirror", [](Session& s, const SettingValue& v) { s.tools.writing.mirrored = v.on; }},

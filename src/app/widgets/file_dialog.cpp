@@ -294,13 +294,12 @@ void FileDialog::load_sketch() {
     std::error_code ec;
     if (!fs::is_regular_file(file, ec) || fs::file_size(file, ec) > kMostSketched) return;
     try {
-        const Writing drawing = read_writing(file);
+        const Writing writing = read_writing(file);
+        const WritingForm& drawing = writing.form();
         const double span = std::max({drawing.width, drawing.height, 1e-9});
-        for (const stroke::RecordedStroke& trace : drawing.traces) {
-            std::vector<Vec2>& line = sketch_.lines.emplace_back();
-            for (const stroke::StrokeSample& s : trace.samples)
-                line.push_back((Vec2(s.position) - drawing.centre) / span + 0.5);
-        }
+        sketch_.lines = drawn_lines(drawing);
+        for (std::vector<Vec2>& line : sketch_.lines)
+            for (Vec2& p : line) p = (p - drawing.centre) / span + 0.5;
     } catch (const std::exception&) {
         // Who opens it hears what is wrong.
     }

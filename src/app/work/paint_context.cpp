@@ -31,6 +31,18 @@ std::uint32_t PaintContext::layer_of(std::uint32_t requested) const {
     return table.find(table.next_id - 1) ? table.next_id - 1 : table.layers.back().id;
 }
 
+void PaintContext::prepare(const stroke::JournalEntry& entry) {
+    work.autosave.prepare(*work.document, stroke::brush_of(entry), stroke::ink_of(entry));
+    bool fresh = false;
+    for (const std::string& name : stroke::inks_of(entry)) {
+        work.autosave.prepare(*work.document, "", name);
+        if (!name.starts_with('#') || std::ranges::find(own_inks, name, &ink::Ink::name) != own_inks.end()) continue;
+        own_inks.push_back(work.document->materials().ink(name));
+        fresh = true;
+    }
+    if (fresh) outbox.change([&](Update& update) { update.events.own_inks = own_inks; });
+}
+
 void PaintContext::take_presets(stroke::Document& document, const std::vector<stroke::JournalEntry>& entries) {
     stroke::Document& own = *work.document;
     document.use(own.materials().substrate());

@@ -29,6 +29,9 @@ struct PaintContext {
     ProgressFn progress(const std::string& name);
     /// Returns the layer; for `kNewestLayer` the one added last.
     std::uint32_t layer_of(std::uint32_t requested) const;
+    /// Stores brush and inks of an entry that is painted next (`Autosave::prepare`). Inks that only it has become the
+    /// project's own.
+    void prepare(const stroke::JournalEntry& entry);
     /// Gives a document the substrate and recolouring of the work, and the presets of its entries and of `entries`.
     void take_presets(stroke::Document& document, const std::vector<stroke::JournalEntry>& entries);
     /// Replaces the document by one of the same model.

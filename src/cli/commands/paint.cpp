@@ -17,6 +17,7 @@
 #include "core/text/counted.h"
 #include "core/text/units.h"
 #include "io/project/commit_queue.h"
+#include "stroke/document/drawing_inks.h"
 #include "stroke/document/fit.h"
 #include "stroke/journal/tables.h"
 
@@ -151,9 +152,8 @@ void prepare_strokes(std::vector<stroke::JournalEntry>& strokes, stroke::Documen
     const std::uint64_t first_group = painting.journal().next_group_id();
     for (stroke::JournalEntry& s : strokes)
         if (s.group.id != 0) s.group.id += first_group - 1;
-    mix_inks(strokes, painting);
+    stroke::mix_drawing_inks(strokes, painting);
     find_presets(painting, strokes);
-    set_films(strokes, painting);
     note_inks(strokes, painting, console);
 }
 

@@ -8,16 +8,8 @@
 #include "stroke/document/document.h"
 
 /// \file
-/// Coloured drawings on their way to the model: inks, films, detail and copies, for `tuft paint`. Main thread.
+/// Coloured drawings on their way to the model: what inks reach, detail and copies, for `tuft paint`. Main thread.
 namespace tuft::cli {
-
-/// Mixes the inks that the drawing's areas name by colours from pigments that suit all of them together
-/// (`Materials::mix_together`), each colour by its area.
-void mix_inks(std::vector<stroke::JournalEntry>& strokes, stroke::Document& painting);
-
-/// Sets the film of every translucent stop: the thickness X that brings the ink nearest (ΔE2000) to its opacity times
-/// its colour over the bare substrate, mixed in sRGB as the drawing's maker saw it. Loads the inks.
-void set_films(std::vector<stroke::JournalEntry>& strokes, const stroke::Document& painting);
 
 /// Returns what each ink that is named by a colour reaches: colour, reached colour, ΔE2000, in the order of use.
 nlohmann::json inks_json(const std::vector<stroke::JournalEntry>& strokes, const stroke::Document& painting);
