@@ -31,6 +31,16 @@ TEST(GuessUnit, ThingsPeoplePaintAreRecognised) {
     EXPECT_DOUBLE_EQ(guess(4.6, 1.85, 1.4).metres_per_unit, 1);
 }
 
+// A mug of 81 x 81 x 97 mm in inches has the numbers of a small lorry in metres.
+TEST(GuessUnit, NamesEachUnitThatMakesAUsualSize) {
+    const std::string mug = guess(3.2, 3.2, 3.8).sentence;
+    EXPECT_THAT(mug, HasSubstr("metres: the model would be 3200 x 3200 x 3800 mm"));
+    EXPECT_THAT(mug, HasSubstr("centimetres 32.0 x 32.0 x 38.0 mm (cm)"));
+    EXPECT_THAT(mug, HasSubstr("inches 81.3 x 81.3 x 96.5 mm (in)"));
+    EXPECT_EQ(mug.find("millimetres"), std::string::npos) << "3 mm are no usual size";
+    EXPECT_EQ(guess(165, 165, 72).sentence.find("possible"), std::string::npos) << "a bowl in millimetres";
+}
+
 TEST(GuessUnit, SenselessSizesFallBackToMillimetres) {
     EXPECT_EQ(guess(0, 0, 0).unit, "mm");
     EXPECT_EQ(guess(1e-9, 1e-9, 0).unit, "mm");

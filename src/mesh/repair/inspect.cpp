@@ -71,15 +71,20 @@ UnitGuess guess_unit(const Box& bounds) {
     }
     guess.unit = kUnits[best].name;
     guess.metres_per_unit = *metres_per(guess.unit);
-    double second = 0;
-    for (std::size_t i = 0; i < kUnits.size(); ++i)
-        if (i != best && score[i] >= 0.4 * score[best] && score[i] > second) {
-            second = score[i];
-            guess.second = kUnits[i].name;
-        }
     guess.sentence = "numbers look like " + std::string(kUnits[best].plural) + ": the model would be " +
                      size_text(bounds.size() * guess.metres_per_unit);
-    if (!guess.second.empty()) guess.sentence += "; " + guess.second + " is possible too";
+    // Beside millimetres that make a usual product nothing else is named; beside metres centimetres and inches are.
+    constexpr double kPossible = 0.35;  // of the best score
+    std::array<std::size_t, 4> order{0, 1, 2, 3};
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return score[a] > score[b]; });
+    const char* join = "; possible too: as ";
+    for (const std::size_t i : order) {
+        if (i == best || score[i] < kPossible * score[best]) continue;
+        if (guess.second.empty()) guess.second = kUnits[i].name;
+        guess.sentence += join + std::string(kUnits[i].plural) + " " +
+                          size_text(bounds.size() * *metres_per(kUnits[i].name)) + " (" + kUnits[i].name + ")";
+        join = ", as ";
+    }
     return guess;
 }
 

@@ -15,7 +15,7 @@ struct UnitGuess {
     std::string unit;  ///< "mm", "cm", "m" or "in"
     double metres_per_unit = 1e-3;
     std::string second;    ///< another unit that is nearly as likely, or ""
-    std::string sentence;  ///< one line for people: the size in that unit, and how certain it is
+    std::string sentence;  ///< one line for people: the size in that unit, and in others that are nearly as likely
 };
 
 /// Guesses the unit of `bounds` (the file's numbers) from the likely size of a product. Sizes between 6 cm and 6 m
