@@ -44,6 +44,38 @@ TEST(Texture, RefreshedTilesAreWhatTheWholeWouldBe) {
         EXPECT_EQ(map.levels[level], whole.levels[level]) << level;
 }
 
+// Beside a bright ground an eye sees differences of light, and little of those near black.
+TEST(Texture, MarksBlackInkByAsMuchLightAsABareGround) {
+    const stroke::Model model = test::shipped_model("bowl.ply", 256);
+    std::uint32_t t = 0;
+    while (!atlas::texel_ref(model.texels, t % 256, t / 256).valid()) ++t;
+    const atlas::TexelRef ref = atlas::texel_ref(model.texels, t % 256, t / 256);
+    const atlas::TexelPlace place = atlas::texel_place(model.texels, ref.slot, ref.texel);
+    const auto marked_by = [&](const char* ink) {
+        stroke::Document painting(model);
+        if (ink) {
+            stroke::Fill fill;
+            fill.ink = ink;
+            painting.paint(fill);
+        }
+        Texture texture(painting);
+        const auto luminance = [&] {
+            const render::MapPixels map = texture.pixels();
+            const auto& rgba = map.levels[0][static_cast<std::size_t>(place.y * map.size + place.x)];
+            const auto light = [&](std::size_t c) { return double{ink::linear_of_code()[rgba[c]]}; };
+            return 0.2126 * light(0) + 0.7152 * light(1) + 0.0722 * light(2);  // Y of linear sRGB
+        };
+        const double plain = luminance();
+        Texture::Marks marks;
+        marks[ref.slot].fill(Texture::kInked);
+        texture.show_marks(marks, painting);
+        return std::abs(luminance() - plain);
+    };
+    const double ground = marked_by(nullptr);
+    EXPECT_GT(ground, 0.05);  // of white's; a twentieth is seen at a glance
+    EXPECT_GT(marked_by("carbon"), ground);
+}
+
 // Light of the first channel as a graphics card looks it up at the centre of texel (x, y) of the first level.
 float looked_up(const render::MapPixels& map, std::size_t level, std::size_t x, std::size_t y) {
     const auto side = static_cast<int>(map.size >> level);

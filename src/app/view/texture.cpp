@@ -17,6 +17,7 @@ constexpr std::array<int, 3> kVeilColour{64, 104, 178};  // sRGB
 constexpr int kRimTexels = 2;                            // charts lie further apart than that
 constexpr std::array<int, 3> kMarkColour{0, 190, 255};   // sRGB
 constexpr int kMarked[] = {0, 22, 92};                   // percent of it: where there is none, ink, its rim
+constexpr int kDarkMarked = 60;                          // of it on black ink: near black a little light is not seen
 
 // Averages are of light, not of its code values.
 struct SrgbTable {
@@ -215,7 +216,10 @@ std::array<std::uint8_t, 4> Texture::texel(std::size_t x, std::size_t y) const {
     const auto marked =
         marks_of_tile_.find(static_cast<std::uint32_t>(y / atlas::kTile * (padded_ / atlas::kTile) + x / atlas::kTile));
     if (marked == marks_of_tile_.end()) return out;
-    if (const int part = kMarked[(*marked->second)[y % atlas::kTile * atlas::kTile + x % atlas::kTile]])
+    const Mark mark = static_cast<Mark>((*marked->second)[y % atlas::kTile * atlas::kTile + x % atlas::kTile]);
+    int part = kMarked[mark];
+    if (mark == kInked) part = kDarkMarked + (part - kDarkMarked) * std::max({out[0], out[1], out[2]}) / 255;
+    if (part > 0)
         for (std::size_t c = 0; c < 3; ++c)
             out[c] = static_cast<std::uint8_t>(out[c] + part * (kMarkColour[c] - out[c]) / 100);
     return out;
