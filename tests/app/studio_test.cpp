@@ -50,7 +50,8 @@ TEST_F(StudioProgram, LayersAreCopiedBlendedRenamedAndMergedInTheirList) {
 // A colour chosen by its code is mixed from the pigments, painted with, and part of the project.
 TEST_F(StudioProgram, AChosenColourIsMixedAndPaintedWith) {
     const Ran ran = studio(kBowl +
-                               "click Colour...\nwait-ready\nexpect label Hex\nset colour "
+                               "move Colour...\nwait 0.2\nplaces\nreport\nclick Colour...\nwait-ready\nexpect label "
+                               "Hex\nplaces\nreport\nset colour "
                                "\"#603010\"\nwait-ready\nstroke 46%,58% 50%,61% 54%,58%\n"
                                "wait-ready\nexpect strokes 1\nsave work.tuft\nwait-ready\n",
                            "--headless --size 1280x900");
@@ -59,6 +60,11 @@ TEST_F(StudioProgram, AChosenColourIsMixedAndPaintedWith) {
     EXPECT_EQ(project["strokes"][0]["ink"], "#603010");
     const std::string recent = read(path("state") + "/tuft/colours");
     EXPECT_EQ(recent, "#603010\n");
+    // A hint goes with the press, so that it hides nothing of the panel that opens beside it.
+    const auto seen = places_in_turn(ran.out);
+    ASSERT_EQ(seen.size(), 2u);
+    EXPECT_TRUE(seen[0].contains("hint"));
+    EXPECT_FALSE(seen[1].contains("hint"));
 }
 
 // The brush fits the model, and a person's choice is there the next time.

@@ -252,10 +252,17 @@ std::vector<std::string> Ui::names() const {
 }
 
 void Ui::hint(const char* text) {
-    if (!text || (modal && !in_dialog) || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+    const std::array<float, 2> item{ImGui::GetItemRectMin().x, ImGui::GetItemRectMin().y};
+    if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
+        if (item == pressed_) pressed_.reset();
+        return;
+    }
+    if (ImGui::IsItemClicked()) pressed_ = item;
+    if (!text || (modal && !in_dialog) || item == pressed_) return;
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(px(300));
     ImGui::TextUnformatted(tr(text));
+    mark("hint");
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
 }

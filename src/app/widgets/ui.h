@@ -3,6 +3,7 @@
 #include <array>
 #include <initializer_list>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -129,6 +130,7 @@ class Ui {
     UiSettings settings_;
     std::set<unsigned> characters_;  // that were drawn, besides those of the interface's own texts
     std::map<std::string, Place> places_;
+    std::optional<std::array<float, 2>> pressed_;  // place of the item without a hint until the cursor leaves it
 };
 
 /// sRGB of the primary button, normal and under the cursor. Its text is white.
