@@ -1,11 +1,14 @@
 #include "app/state/brush_shelf.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 
 #include "brush/preset/preset.h"
 
@@ -108,6 +111,30 @@ TEST_F(OwnBrush, ThatIsOffTheListAndOutOfTheHandIsLetGo) {
         EXPECT_EQ(shelf.at(other).reading, listed);
         EXPECT_EQ(shelf.at(file_).reading == read, in_hand) << "it is read again when it is asked for";
     }
+}
+
+// A lease (fcntl) makes who opens the file wait, as a disk does that is gone: up to 45 s, or until it is given back.
+TEST_F(OwnBrush, OfADiskThatDoesNotAnswerIsNotWaitedForAtTheEnd) {
+    auto shelf = std::make_unique<BrushShelf>();
+    shelf->at(file_);
+    write(0.03);
+    const auto before = signal(SIGIO, SIG_IGN);  // which tells the holder that somebody waits
+    const int file = ::open(file_.c_str(), O_RDWR);
+    ASSERT_GE(file, 0);
+    if (::fcntl(file, F_SETLEASE, F_WRLCK) != 0) {
+        ::close(file);
+        signal(SIGIO, before);
+        GTEST_SKIP() << "no leases on this file system";
+    }
+    shelf->look();
+    shelf.reset();
+    // Would wait still: the lease is neither given back nor has its time run out.
+    const int second = ::open(file_.c_str(), O_RDONLY | O_NONBLOCK);
+    EXPECT_EQ(second, -1);
+    EXPECT_EQ(errno, EWOULDBLOCK);
+    ::fcntl(file, F_SETLEASE, F_UNLCK);
+    ::close(file);
+    signal(SIGIO, before);
 }
 
 TEST_F(OwnBrush, HangsInAFamilyThatIsMadeAnewOnlyWhereSomethingChanged) {

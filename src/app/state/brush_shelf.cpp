@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "app/document/detached.h"
 #include "core/error.h"
 #include "core/files/modified_time.h"
 
@@ -80,12 +81,18 @@ void BrushShelf::look() {
     for (const auto& [name, brush] : brushes_)
         if (is_own_brush(name)) known.push_back({name, brush.reading, brush.written});
     if (known.empty()) return;
-    looking_ = std::async(std::launch::async, [known = std::move(known)] {
+    looking_ = run_detached([known = std::move(known)] {
         std::vector<Changed> changed;
         for (const Known& brush : known)
             if (modified_time(brush.name) != brush.written) changed.push_back({brush, read_file_of(brush.name)});
         return changed;
     });
+}
+
+// A look that is nearly done ends before the program does; one at a disk that is gone is left alone.
+BrushShelf::~BrushShelf() {
+    constexpr std::chrono::milliseconds kPatience{200};
+    if (busy()) looking_.wait_for(kPatience);
 }
 
 void BrushShelf::wait() const {

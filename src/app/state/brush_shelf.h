@@ -39,9 +39,15 @@ struct ShelfBrush {
 };
 
 /// Reads each brush when it is first asked for, and files of the user again when they change, go or come back: those on
-/// a thread of its own, as a file of a disk in a network may take long to answer.
+/// a thread of its own, as a file of a disk in a network may take long to answer, or never does: a shelf that goes does
+/// not wait for it.
 class BrushShelf {
   public:
+    BrushShelf() = default;
+    ~BrushShelf();
+    BrushShelf(const BrushShelf&) = delete;
+    BrushShelf& operator=(const BrushShelf&) = delete;
+
     /// Returns a brush by the name of its own size.
     const ShelfBrush& at(const std::string& name);
     /// Reads the brush now.

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <future>
+#include <thread>
+#include <type_traits>
+#include <utility>
+
+/// \file
+/// Work on files that may never answer, such as those of a network disk that is gone. Any thread.
+namespace tuft::app {
+
+/// Runs `work` on a thread that nobody waits for: unlike that of `std::async`, the result can be dropped before it is
+/// there. `work` owns all that it uses.
+template <typename Work>
+std::future<std::invoke_result_t<Work>> run_detached(Work work) {
+    std::packaged_task<std::invoke_result_t<Work>()> task(std::move(work));
+    std::future<std::invoke_result_t<Work>> result = task.get_future();
+    std::thread(std::move(task)).detach();
+    return result;
+}
+
+}  // namespace tuft::app
