@@ -186,6 +186,27 @@ TEST(CleanEnds, AClickIsADotWhereItWas) {
     }
 }
 
+TEST(CleanEnds, AFanLeansAheadAsItIsHeldUnlessAPenOrTheSettingsLeanIt) {
+    const View view{.middle = sheet().mesh->bounds.centre()};
+    const brush::Preset fan = brush::load_preset("fan-30");
+    // Of the last pose of a stroke upwards or to the right; the broad side is across the view.
+    const auto lean = [&](const Vec2& ahead, const PointerSettings& settings, std::optional<Vec2> tilt) {
+        PointerInput hand(*sheet().query, fan, settings);
+        brush::Pose last;
+        for (Aim aim : drawn(view, {{0, 0}, 60.0 * ahead}, 200, false)) {
+            aim.tilt = tilt;
+            for (const StrokeStep& step : hand.move(aim))
+                if (!step.poses.empty()) last = step.poses.back();
+        }
+        return last.rotation * Vec3(0, 0, 1);
+    };
+    EXPECT_NEAR(lean({0, 1}, {}, {}).y, std::sin(fan.lean), 1e-3);
+    EXPECT_NEAR(lean({0, -1}, {}, {}).y, -std::sin(fan.lean), 1e-3);
+    EXPECT_NEAR(lean({1, 0}, {}, {}).z, 1, 1e-3) << "on edge";
+    EXPECT_NEAR(lean({0, 1}, {.tilt = {0.3, 0}}, {}).y, 0, 1e-3);
+    EXPECT_NEAR(lean({0, 1}, {}, Vec2(0)).y, 0, 1e-3);
+}
+
 TEST(CleanEnds, AZigzagBeginsAndEndsWhereTheHandDid) {
     const View view{.middle = sheet().mesh->bounds.centre()};
     for (const double pace : {200.0, 800.0}) {

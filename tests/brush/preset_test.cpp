@@ -57,6 +57,15 @@ TEST(Presets, WrittenAndReadBackAreTheSame) {
     EXPECT_EQ(preset_toml(q), preset_toml(p));
 }
 
+TEST(Presets, AMakeThatLeansSaysSo) {
+    const Preset fan = load_preset("fan-30");
+    EXPECT_EQ(fan.lean, 0.4);
+    EXPECT_EQ(parse_preset(preset_toml(fan), "again.toml").lean, fan.lean);
+    EXPECT_EQ(scaled(fan, 0.5).lean, fan.lean);
+    EXPECT_EQ(preset_toml(load_preset("flat-12")).find("[hold]"), std::string::npos);
+    EXPECT_THAT(error_of("[hold]\nlean_rad = 1.2\n"), testing::HasSubstr("'hold.lean_rad' is 1.2, outside 0 to 1"));
+}
+
 TEST(Presets, OfAnySizeAProjectHoldsThemToTheBit) {
     std::vector<std::string> names = list_presets();
     for (const char* size : {"*0.39984", "*1.7321", "*0.1234"}) names.push_back("goat-small" + std::string(size));

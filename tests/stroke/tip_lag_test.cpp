@@ -8,10 +8,12 @@
 #include <map>
 #include <numbers>
 
+#include "brush/calibration/sweep.h"
 #include "core/ease.h"
 #include "sheet.h"
 #include "stroke/drawing/line_width.h"
 #include "stroke/drawing/plane_ink.h"
+#include "stroke/placement/holder.h"
 
 namespace tuft::stroke {
 namespace {
@@ -89,6 +91,74 @@ TEST(TipLag, AnUprightHolderHasTheMeasuredLagAndSidesMirror) {
     // Hair pulled behind a holder that leans ahead trails it less than an upright one's.
     EXPECT_LT(lag.at(depth, {0.6, 0}).x, -1e-3);
     EXPECT_NEAR(lag.at(depth, {0.6, 0}).y, 0, 1e-15);  // metres: round-off of the rod
+}
+
+/// A straight line to the right from the origin, its ferrule rolled, set down within its first millimetre.
+StrokeSamples rolled_line(double length, double pressure, double roll) {
+    StrokeSamples trace;
+    for (int i = 0; 1e-4 * i < length; ++i)
+        trace.samples.push_back({.time = 3e-3 * i,
+                                 .position = {1e-4 * i, 0, 0},
+                                 .pressure = pressure * std::min(1.0, 0.1 * i),
+                                 .roll = roll});
+    return trace;
+}
+
+TEST(TipLag, AFanThatNobodyLeansDrawsAnEvenBandFromItsStart) {
+    constexpr double kPress = 0.4, kCell = 2e-4;
+    const brush::Preset fan = brush::load_preset("fan-30");
+    HolderOptions options = holder_options(fan);
+    const double depth = kPress * options.working_depth;
+    options.tip_lag = {{0, 0}, {depth, brush::line_place(fan, depth, {fan.lean, 0}, 0.5 * std::numbers::pi).behind}};
+    const PlaneInk ink = plane_ink(rolled_line(8e-3, kPress, 0.5 * std::numbers::pi), fan, options, 3e-4, kCell);
+    const auto column = [&](double x) {
+        Span span;
+        double inked = 0;
+        for (double y = -0.02; y < 0.02; y += kCell)
+            if (ink.at({x, y}) > 0.5) span = {std::min(span.lo, y), std::max(span.hi, y)}, inked += kCell;
+        return std::pair{span, inked};
+    };
+    const double width = column(3e-3).first.width();
+    EXPECT_GT(width, 0.75 * 30e-3) << "the fan is spread";
+    for (const double x : {1e-3, 3e-3, 6e-3}) {
+        const auto [span, inked] = column(x);
+        // The outer hair comes down last: a few cells.
+        EXPECT_NEAR(span.width(), width, 0.04 * width) << x;
+        // It parts by a few hairs at most. Upright a third of it has ink: a T. Under the last stamp there is an arc.
+        EXPECT_GT(inked, x < 5e-3 ? 0.92 * span.width() : 0) << x;
+        EXPECT_NEAR(0.5 * (span.lo + span.hi), 0, 0.02 * width) << "on the path, " << x;
+    }
+    // The hair ends in an arc 4 mm high. Upright, its middle comes down 9 mm before the path.
+    EXPECT_EQ(column(-5e-3).second, 0);
+}
+
+TEST(TipLag, AMakeLeansAcrossItsBroadSideUnlessAPenTiltsIt) {
+    HolderOptions options{.tuft_length = 0.01, .lean = 0.4, .across = true};
+    const auto tilts = [&](double roll, const Vec2& tilt = Vec2{0}) {
+        StrokeSamples trace = rolled_line(0.02, 0.4, roll);
+        for (StrokeSample& s : trace.samples) s.tilt = tilt;
+        return lean_holder(trace, options).samples.back().tilt;
+    };
+    const double quarter = 0.5 * std::numbers::pi, half = std::sqrt(0.5);
+    const auto expect_near = [](const Vec2& a, const Vec2& b) { EXPECT_LT(glm::distance(a, b), 1e-12); };
+    expect_near(tilts(quarter), {0.4, 0});  // either face leads
+    expect_near(tilts(-quarter), {0.4, 0});
+    expect_near(tilts(0), {0, 0});
+    const double both = std::atan(std::tan(0.4) * half * half);
+    expect_near(tilts(0.5 * quarter), {both, both});  // y, across, is up and to the left
+    EXPECT_EQ(tilts(quarter, {0, 0.01}), Vec2(0, 0.01));
+    options.across = false;
+    expect_near(tilts(0), {0.4, 0});
+    // Where the path turns back the lean comes round, and passes through upright.
+    StrokeSamples back = rolled_line(0.02, 0.4, quarter);
+    for (std::size_t i = 0; i < back.samples.size(); ++i)
+        back.samples[i].position.x = 0.01 - std::abs(0.01 - back.samples[i].position.x);
+    const StrokeSamples turned = lean_holder(back, options);
+    expect_near(turned.samples.back().tilt, {-0.4, 0});
+    for (std::size_t i = 1; i < turned.samples.size(); ++i)
+        EXPECT_LT(glm::distance(turned.samples[i].tilt, turned.samples[i - 1].tilt),
+                  0.4 * 1e-4 / lean_string(options) * 1.1)
+            << "no faster than the string turns";
 }
 
 /// What a trace under a holder that is upright but for a little to the right and to the writer leaves on a plane: where

@@ -81,8 +81,13 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
             const Vec3 gone = samples.empty() ? Vec3(0) : place.position - samples.back().position;
             sample.roll += stroke::follow_stroke(follower, 0, {glm::dot(gone, axes.right), glm::dot(gone, axes.down)});
         }
-        if (press > 0 && glm::length(ahead) > 1e-9)
-            sample.tip_lag = stroke::tip_lag_at(hand.holder, press, hand.tilt, glm::normalize(ahead));
+        if (glm::length(ahead) > 1e-9) {
+            if (hand.holder.lean > 0 && hand.tilt == Vec2(0))
+                sample.tilt = stroke::lean_of_make(hand.holder, sample.roll, glm::normalize(ahead));
+            if (press > 0)
+                sample.tip_lag =
+                    stroke::tip_lag_at(hand.holder, press, sample.tilt, sample.roll, glm::normalize(ahead));
+        }
         if (const auto on = query.closest_point(place.position, 0.01)) {
             sample.on = *on;
             sample.on_surface =

@@ -45,7 +45,7 @@ struct CurveHand {
     stroke::HolderOptions holder;  ///< with the tip lag of the brush, so that the ink is on the curve
     CurveSettings settings;
     double pressure = 0.5;                ///< 0–1
-    Vec2 tilt{0};                         ///< radians, lean towards `right` and `down`
+    Vec2 tilt{0};                         ///< radians, lean towards `right` and `down`; 0: as the make is held
     double roll = 0;                      ///< radians, of the ferrule, as of flat samples
     bool roll_follow = false;             ///< the broad side turns across the curve (roll.h); `roll` is added
     Vec3 right{1, 0, 0}, down{0, -1, 0};  ///< unit, of the view

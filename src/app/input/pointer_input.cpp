@@ -204,18 +204,40 @@ void PointerInput::onto_surface() {
 
 brush::Pose PointerInput::pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure,
                                   double time) const {
-    const Vec2 tilt = glm::clamp(aim.tilt.value_or(settings_.tilt), -kMaxTilt, kMaxTilt);
+    const Vec2 leant = lean_of_make(aim, normal);
+    const Vec2 tilt = glm::clamp(aim.tilt.value_or(settings_.tilt) + leant, -kMaxTilt, kMaxTilt);
     const auto along = [&](const Vec3& v) {
         const Vec3 d = v - glm::dot(v, normal) * normal;
         return glm::length(d) > 1e-6 ? glm::normalize(d) : Vec3(0);
     };
-    const double tipped = kTips * (1 - smooth_step(gone_ / (kTipTurns * holder_.tip_lag_turn)));
+    const double tipped =
+        std::max(0.0, kTips - glm::length(leant)) * (1 - smooth_step(gone_ / (kTipTurns * holder_.tip_lag_turn)));
     const Vec3 up = glm::normalize(normal + std::tan(tilt.x) * along(aim.view_right) +
                                    std::tan(tilt.y) * along(aim.view_up) + tipped * dragged_.string);
     const double height = holder_.tuft_length + (pressure > 0 ? -pressure * holder_.working_depth : holder_.hover);
     return {.position = point + ahead_of(aim, normal, pressure) + height * up,
             .rotation = rotation_at(aim, up),
             .time = time};
+}
+
+// As `settings_.tilt`: where neither the pen nor the settings lean the holder.
+Vec2 PointerInput::lean_of_make(const Aim& aim, const Vec3& normal) const {
+    if (!(holder_.lean > 0) || aim.tilt || settings_.tilt != Vec2(0)) return Vec2(0);
+    const stroke::Axes axes = stroke::axes_across(normal, aim.view_right, -aim.view_up);
+    const Vec2 ahead{glm::dot(leant_.string, axes.right), glm::dot(leant_.string, axes.down)};
+    const Vec2 lean = stroke::lean_of_make(holder_, roll_at(aim), ahead);
+    return {lean.x, -lean.y};
+}
+
+// Of the ferrule, on the surface: where a make leans that is set down without a direction.
+Vec3 PointerInput::across(const Aim& aim) const {
+    if (!holder_.across) return Vec3(0);
+    const stroke::Axes axes = stroke::axes_across(normal_, aim.view_right, -aim.view_up);
+    return -std::sin(roll_at(aim)) * axes.right - std::cos(roll_at(aim)) * axes.down;
+}
+
+double PointerInput::roll_at(const Aim& aim) const {
+    return settings_.roll + (settings_.roll_follow && follower_.started ? follower_.roll : -aim.turn);
 }
 
 // A wide ferrule has its broad side across the view; a round one lies as it may.
@@ -228,9 +250,7 @@ Quat PointerInput::rotation_at(const Aim& aim, const Vec3& up) const {
         return turned(glm::normalize(glm::quat_cast(Mat3(f.t, f.b, f.n))), -aim.turn);
     }
     const Vec3 x = stroke::axes_across(up, aim.view_right, -aim.view_up).right;
-    const bool follows = settings_.roll_follow && follower_.started;
-    return turned(glm::normalize(glm::quat_cast(Mat3(x, glm::cross(up, x), up))),
-                  settings_.roll + (follows ? follower_.roll : -aim.turn));
+    return turned(glm::normalize(glm::quat_cast(Mat3(x, glm::cross(up, x), up))), roll_at(aim));
 }
 
 // The holder has gone on: it turns as the pen does, and after its stroke.
@@ -247,19 +267,23 @@ Vec3 PointerInput::ahead_of(const Aim& aim, const Vec3& normal, double pressure)
     const stroke::Axes axes = stroke::axes_across(normal, aim.view_right, -aim.view_up);
     const Vec2 ahead{glm::dot(dragged_.string, axes.right), glm::dot(dragged_.string, axes.down)};
     if (glm::length(ahead) < 1e-9) return Vec3(0);
+    const Vec2 tilt = settings_.tilt + lean_of_make(aim, normal);
     const Vec2 lag =
-        taut * stroke::tip_lag_at(holder_, pressure, {settings_.tilt.x, -settings_.tilt.y}, glm::normalize(ahead));
+        taut * stroke::tip_lag_at(holder_, pressure, {tilt.x, -tilt.y}, roll_at(aim), glm::normalize(ahead));
     const double spread = pressure * spread_ * (1 - smooth_step(gone_ / (kSpreadGone * holder_.tuft_length)));
     return lag.x * axes.right + lag.y * axes.down + spread * dragged_.string;
 }
 
-// The point has moved: what it drags follows on the string, along the surface.
+// The point has moved: what it drags follows on the strings, along the surface.
 void PointerInput::drag(const Aim& aim) {
-    Vec3 offset = along_surface(point_ - dragged_.position, normal_, aim, at_start());
-    if (const double length = glm::length(offset); length > holder_.tip_lag_turn)
-        offset *= holder_.tip_lag_turn / length;
-    dragged_.position = point_ - offset;
-    dragged_.string = offset / holder_.tip_lag_turn;
+    const auto follow = [&](DraggedPoint& dragged, double reach) {
+        Vec3 offset = along_surface(point_ - dragged.position, normal_, aim, at_start());
+        if (const double length = glm::length(offset); length > reach) offset *= reach / length;
+        dragged.position = point_ - offset;
+        dragged.string = offset / reach;
+    };
+    if (is_clean(aim)) follow(dragged_, holder_.tip_lag_turn);
+    follow(leant_, stroke::lean_string(holder_));
 }
 
 double PointerInput::goal_pressure(const Aim& aim) const {
@@ -282,8 +306,9 @@ void PointerInput::pen_down(const Aim& aim, const AimedSurface& hit, const Vec3&
     spread_ = 0;
     follower_ = {};
     turn_holder(aim, Vec3(0));
-    dragged_.string = towards;
-    dragged_.position = point_ - holder_.tip_lag_turn * dragged_.string;
+    dragged_ = {point_ - holder_.tip_lag_turn * towards, towards};
+    const Vec3 leans = towards != Vec3(0) ? towards : across(aim);
+    leant_ = {point_ - stroke::lean_string(holder_) * leans, leans};
     steps.push_back({StrokeStep::Kind::begin, {}});
     steps.push_back({StrokeStep::Kind::poses, {pose_at(aim, point_, normal_, 0, 0)}});
 }
@@ -370,7 +395,7 @@ void PointerInput::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, 
         const double constant = std::max(0.01, settings_.smoothing) * (leans_ahead ? 1 - at_start() : 1);
         normal_ = glm::normalize(normal_ + part(dt, constant) * (normal - normal_));
         onto_surface();
-        if (is_clean(aim)) drag(aim);
+        drag(aim);
         turn_holder(aim, point_ - before);
         gone_ += glm::distance(before, point_);
         const double v = glm::distance(before, point_) / dt;

@@ -87,6 +87,8 @@ struct StrokeStep {
 /// (`stroke::tip_lag_at`), in the direction of a point dragged behind it (stroke/placement/tip_lag.h). At the end the
 /// hand decelerates evenly to the cursor's last point and lifts there; after a fast stroke it lifts while moving. Pens
 /// need none of this: their pressure shapes the ends.
+///
+/// A holder that neither a pen nor the settings lean, leans as its make is held (`stroke::lean_of_make`).
 class PointerInput {
   public:
     PointerInput(const mesh::SurfaceQuery& surface, const brush::Preset& preset, const PointerSettings& settings,
@@ -112,7 +114,7 @@ class PointerInput {
     };
 
     struct DraggedPoint {
-        Vec3 position{0};  ///< metres, the point dragged on a string of `tip_lag_turn`
+        Vec3 position{0};  ///< metres, the point dragged on a string
         Vec3 string{0};    ///< the string, of length 1 where it is taut
     };
     struct Motion {
@@ -126,6 +128,9 @@ class PointerInput {
     bool is_clean(const Aim& aim) const { return settings_.clean_ends && aim.pressure < 0; }
     brush::Pose pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure, double time) const;
     Quat rotation_at(const Aim& aim, const Vec3& up) const;
+    double roll_at(const Aim& aim) const;
+    Vec3 across(const Aim& aim) const;
+    Vec2 lean_of_make(const Aim& aim, const Vec3& normal) const;
     void turn_holder(const Aim& aim, const Vec3& motion);
     Vec3 ahead_of(const Aim& aim, const Vec3& normal, double pressure) const;
     void pen_down(const Aim& aim, const AimedSurface& hit, const Vec3& towards, std::vector<StrokeStep>& steps);
@@ -151,9 +156,10 @@ class PointerInput {
     bool over_edge_ = false;        ///< the cursor crossed an edge of the outline since it was pressed
     Aim aim_;                       ///< the last one
     std::vector<Waiting> waiting_;  ///< of a clean stroke, until its direction is known
-    DraggedPoint dragged_;
-    double gone_ = 0;    ///< metres moved since pen down
-    double spread_ = 0;  ///< metres, additional lag of the tip there, at pressure 1
+    DraggedPoint dragged_;          ///< on a string of `tip_lag_turn`: where the tip lag points
+    DraggedPoint leant_;            ///< on one of `stroke::lean_string`: where the make leans
+    double gone_ = 0;               ///< metres moved since pen down
+    double spread_ = 0;             ///< metres, additional lag of the tip there, at pressure 1
     Vec3 goal_{0}, goal_normal_{0, 0, 1}, point_{0}, normal_{0, 0, 1};
     Motion motion_;
 };

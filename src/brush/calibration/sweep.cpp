@@ -116,7 +116,7 @@ struct Steady {
     Recycled<Vec3> node;  ///< tip first, metres
 };
 
-Steady drag(const Preset& preset, double depth, const Vec2& lean) {
+Steady drag(const Preset& preset, double depth, const Vec2& lean, double roll) {
     constexpr double kStep = 0.02;  // of the length
     constexpr double kDrag = 3;     // lengths
     const int press = 20 + static_cast<int>(std::ceil(depth / (kStep * preset.length)));
@@ -125,8 +125,9 @@ Steady drag(const Preset& preset, double depth, const Vec2& lean) {
     const Vec3 up = glm::normalize(Vec3{std::tan(lean.x), std::tan(lean.y), 1});
     const Vec3 tip_to_root = preset.length * up;
     Pose pose{tip_to_root, {1, 0, 0, 0}, 0};
-    if (lean != Vec2{0}) {
-        const Vec3 x = glm::normalize(Vec3{1, 0, 0} - up.x * up);
+    if (lean != Vec2{0} || roll != 0) {
+        const Vec3 level = glm::normalize(Vec3{1, 0, 0} - up.x * up);
+        const Vec3 x = roll == 0 ? level : std::cos(roll) * level + std::sin(roll) * glm::cross(up, level);
         pose.rotation = glm::normalize(glm::quat_cast(Mat3(x, glm::cross(up, x), up)));
     }
     TuftState state = step(tuft, pose, {&sheet, 1}, 0);
@@ -149,7 +150,7 @@ Steady drag(const Preset& preset, double depth, const Vec2& lean) {
 }  // namespace
 
 SteadyTuft sweep_at(const Preset& preset, double depth) {
-    const auto [patch, foot, node] = drag(preset, depth, Vec2{0});
+    const auto [patch, foot, node] = drag(preset, depth, Vec2{0}, 0);
     SteadyTuft out{{depth}, {}};
     for (const Vec3& x : node) out.spine.emplace_back(x.x - foot, x.z);
     if (patch.empty()) return out;
@@ -167,8 +168,8 @@ std::vector<SweepRow> sweep_depth(const Preset& preset, std::span<const double> 
     return rows;
 }
 
-LinePlace line_place(const Preset& preset, double depth, const Vec2& lean) {
-    const auto [patch, tip, node] = drag(preset, depth, lean);
+LinePlace line_place(const Preset& preset, double depth, const Vec2& lean, double roll) {
+    const auto [patch, tip, node] = drag(preset, depth, lean, roll);
     if (patch.empty()) return {};
     return {tip - 0.5 * (patch.left.x + patch.right.x), 0.5 * (patch.left.y + patch.right.y)};
 }

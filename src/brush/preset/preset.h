@@ -52,6 +52,9 @@ struct Preset {
     double surface_tension = 0.05;  ///< N/m, of the ink between two spines
     double hair_friction = 0.3;     ///< Coulomb μ between hair and hair
 
+    /// rad, lean of the holder ahead, across its broad side, in a hand that gives no tilt
+    double lean = 0;
+
     // Bending.
     double stiffness = 2e-4;      ///< B0, N·m², at the root, of all hair together
     double alpha = -1;            ///< α of the modulus

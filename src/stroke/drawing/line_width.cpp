@@ -9,7 +9,6 @@
 #include "stroke/gesture/tractrix.h"
 #include "stroke/placement/holder.h"
 #include "stroke/placement/placement.h"
-#include "stroke/placement/tip_lag.h"
 
 namespace tuft::stroke {
 
@@ -63,6 +62,10 @@ const HolderOptions& WidthTables::holder(const std::string& brush) {
     if (at != holds_.end()) return at->second;
     HolderOptions options = holder_options(preset(brush));
     options.tip_lag = measure_tip_lag(preset(brush));
+    if (options.lean > 0) {
+        TiltedTipLag& tilted = tilted_.try_emplace(brush, preset(brush)).first->second;
+        options.tip_lag_change = [&tilted](double depth, const Vec2& lean) { return tilted.at(depth, lean); };
+    }
     return holds_.emplace(brush, std::move(options)).first->second;
 }
 

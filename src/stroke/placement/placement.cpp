@@ -34,6 +34,10 @@ double working_depth(const brush::Preset& preset) {
     return 0.5 * preset.length;
 }
 
+bool bends_across(const brush::Preset& preset) {
+    return brush::has_broad_side(preset) && preset.lean > 0;
+}
+
 HolderOptions holder_options(const brush::Preset& preset) {
     return {.tuft_length = preset.length,
             .working_depth = working_depth(preset),
@@ -42,7 +46,9 @@ HolderOptions holder_options(const brush::Preset& preset) {
             .tip_lag = {},
             // A fine tuft turns sooner, and a blade is led by its painter along its line.
             .tip_lag_turn = std::min(preset.slant > 0 ? 0.4e-3 : HolderOptions{}.tip_lag_turn, 0.075 * preset.length),
-            .blade_landing = preset.slant > 0 ? 0.4 * preset.length : 0};
+            .blade_landing = preset.slant > 0 ? 0.4 * preset.length : 0,
+            .lean = preset.lean,
+            .across = bends_across(preset)};
 }
 
 HolderOptions holder_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh) {
@@ -184,7 +190,7 @@ void lift_off_sheet(const std::vector<bool>& left, std::span<SurfaceSample> mapp
 HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& trace, const HolderOptions& options) {
     if (!trace.flat) return {{}, spatial_poses(trace), 0};
     // The mapped samples are where the ink is to be: over a hollow, the surface ahead leans otherwise.
-    const StrokeSamples led = compensate_tip_lag(trace, options);
+    const StrokeSamples led = compensate_tip_lag(lean_holder(trace, options), options);
     HandPath path;
     path.set_down = led.samples.size() - trace.samples.size();
     const StrokeSamples lifted = lift_off(led, options);

@@ -95,10 +95,16 @@ struct HolderOptions {
     /// Metres of travel over which a blade, whose longest hair stands ahead of its axis, lands leaning ahead; 0: no
     /// blade.
     double blade_landing = 0;
+    double lean = 0;      ///< radians, `brush::Preset::lean`
+    bool across = false;  ///< `bends_across`: lean and tip lag are across the broad side; false: along the path
 };
 
 /// Returns the working depth of a brush, metres: half of the free hair.
 double working_depth(const brush::Preset& preset);
+
+/// Whether hair of this brush bends across the broad side only, whichever way the path goes: of a wide ferrule whose
+/// make leans, such as a fan. Along its broad side a fan's hair has no steady place.
+bool bends_across(const brush::Preset& preset);
 
 /// Returns options for a brush over a model, `steady` its `drape_radius`, without tip lag.
 HolderOptions holder_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh);
@@ -128,7 +134,7 @@ struct HandPath {
     std::vector<brush::Pose> poses;
     std::size_t set_down = 0;  ///< poses before that of the trace's first sample
 };
-/// Returns the poses of a trace: of a flat one after `compensate_tip_lag`, `lift_off`, `map_to_surface`,
+/// Returns the poses of a trace: of a flat one after `lean_holder`, `compensate_tip_lag`, `lift_off`, `map_to_surface`,
 /// `leave_other_sheets` and `pose_holder`; of one in space its own. The brush is lifted where a stroke leaves its
 /// sheet, its tip over the edge where another sheet is near, and pressed over its tip lag where the stroke comes back.
 HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& trace, const HolderOptions& options);

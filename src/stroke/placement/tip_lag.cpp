@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "brush/calibration/sweep.h"
 #include "core/ease.h"
@@ -11,14 +12,21 @@ namespace tuft::stroke {
 namespace {
 
 constexpr double kUpright = 0.05, kLeans = 0.15;  // radians
+constexpr double kOnGrid = 1e-9;                  // of a cell
 constexpr double kPlumb = 0.3;  // of the tuft's length, of travel over which an upright holder comes to its lean
+
+/// Of the ferrule from the path, radians, in steady strokes that the tip lag is measured on.
+double measured_roll(const brush::Preset& preset) {
+    return bends_across(preset) ? 0.5 * std::numbers::pi : 0;
+}
 
 /// Where x lies between the grid's values, held to its ends.
 template <std::size_t N>
 std::pair<std::size_t, double> cell_of(const std::array<double, N>& grid, double x) {
     std::size_t i = 0;
     while (i + 2 < N && x >= grid[i + 1]) ++i;
-    return {i, std::clamp((x - grid[i]) / (grid[i + 1] - grid[i]), 0.0, 1.0)};
+    const double f = std::clamp((x - grid[i]) / (grid[i + 1] - grid[i]), 0.0, 1.0);
+    return {i, f < kOnGrid ? 0 : f > 1 - kOnGrid ? 1 : f};  // a value of the grid needs no other
 }
 
 }  // namespace
@@ -28,8 +36,8 @@ const std::vector<Vec2>& TiltedTipLag::node(std::size_t i, std::size_t j) {
     std::vector<Vec2>& tip_lags = nodes_[i * kAcross.size() + j];
     if (tip_lags.empty()) {
         for (const double part : kDepths) {
-            const brush::LinePlace place =
-                brush::line_place(preset_, part * working_depth(preset_), {kAlong[i], kAcross[j]});
+            const brush::LinePlace place = brush::line_place(preset_, part * working_depth(preset_),
+                                                             {kAlong[i], kAcross[j]}, measured_roll(preset_));
             tip_lags.push_back({place.behind, -place.aside});
         }
     }
@@ -43,9 +51,7 @@ Vec2 TiltedTipLag::of_node(std::size_t i, std::size_t j, double depth) {
     return glm::mix(node(i, j)[k], node(i, j)[k + 1], f);
 }
 
-Vec2 TiltedTipLag::at(double depth, const Vec2& lean) {
-    const double part = smooth_step((glm::length(lean) - kUpright) / (kLeans - kUpright));
-    if (part <= 0 || depth <= 0) return Vec2{0};
+Vec2 TiltedTipLag::of_lean(double depth, const Vec2& lean) {
     const auto [i, f] = cell_of(kAlong, lean.x);
     const auto [j, g] = cell_of(kAcross, std::abs(lean.y));
     Vec2 sum{0};
@@ -54,12 +60,31 @@ Vec2 TiltedTipLag::at(double depth, const Vec2& lean) {
             if (wa * wb > 0) sum += wa * wb * of_node(a, b, depth);
     // Leaning to the other side is the mirror image.
     if (lean.y < 0) sum.y = -sum.y;
-    constexpr std::size_t kUprightNode = 3;
-    static_assert(kAlong[kUprightNode] == 0 && kAcross[0] == 0);
-    return part * (sum - of_node(kUprightNode, 0, depth));
+    return sum;
+}
+
+Vec2 TiltedTipLag::at(double depth, const Vec2& lean) {
+    if (depth <= 0) return Vec2{0};
+    if (const Vec2 held{preset_.lean, 0}; bends_across(preset_)) {
+        const bool is_held = glm::distance(lean, held) < kOnGrid;
+        return is_held ? Vec2{0} : of_lean(depth, lean) - of_lean(depth, held);
+    }
+    const double part = smooth_step((glm::length(lean) - kUpright) / (kLeans - kUpright));
+    if (part <= 0) return Vec2{0};
+    return part * (of_lean(depth, lean) - of_lean(depth, Vec2{0}));
+}
+
+std::vector<TipLag> TiltedTipLag::as_held() {
+    std::vector<TipLag> tip_lag{{0, 0}};
+    for (const double part : kDepths) {
+        const double depth = part * working_depth(preset_);
+        tip_lag.push_back({depth, of_lean(depth, {preset_.lean, 0}).x});
+    }
+    return tip_lag;
 }
 
 std::vector<TipLag> measure_tip_lag(const brush::Preset& preset) {
+    if (bends_across(preset)) return TiltedTipLag(preset).as_held();
     std::vector<double> depths;
     for (const double part : {0.05, 0.15, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0})
         depths.push_back(part * working_depth(preset));
@@ -97,12 +122,33 @@ Vec2 tilted_tip_lag(const HolderOptions& options, const Vec2& tilt, double depth
     return taut * (more.x * ahead + more.y * left);
 }
 
+/// Of the ferrule's y, unit, to the right and down.
+Vec2 across_of(double roll) {
+    return {-std::sin(roll), -std::cos(roll)};
+}
+
+/// The part of a direction that the hair bends against.
+Vec2 bent_along(const HolderOptions& options, double roll, const Vec2& ahead) {
+    return options.across ? glm::dot(ahead, across_of(roll)) * across_of(roll) : ahead;
+}
+
 }  // namespace
 
-Vec2 tip_lag_at(const HolderOptions& options, double pressure, const Vec2& tilt, const Vec2& ahead) {
+Vec2 tip_lag_at(const HolderOptions& options, double pressure, const Vec2& tilt, double roll, const Vec2& ahead) {
     const double depth = depth_of(options, pressure);
-    const Vec2 tip_lag = tip_lag_length(options.tip_lag, depth) * ahead;
-    return options.tip_lag_change ? tip_lag + tilted_tip_lag(options, tilt, depth, ahead) : tip_lag;
+    const Vec2 along = bent_along(options, roll, ahead);
+    const Vec2 tip_lag = tip_lag_length(options.tip_lag, depth) * along;
+    return options.tip_lag_change ? tip_lag + tilted_tip_lag(options, tilt, depth, along) : tip_lag;
+}
+
+double lean_string(const HolderOptions& options) {
+    return kPlumb * options.tuft_length;
+}
+
+Vec2 lean_of_make(const HolderOptions& options, double roll, const Vec2& ahead) {
+    const double taut = glm::length(ahead);
+    if (!(taut > 1e-9)) return Vec2{0};
+    return glm::atan(std::tan(taut * options.lean) / taut * bent_along(options, roll, ahead));
 }
 
 namespace {
@@ -156,7 +202,7 @@ bool set_down(StrokeSamples& trace, const HolderOptions& options, const Vec2& ah
     Vec3 foot{0};
     for (int i = 1; i <= kPieces; ++i) {
         const double pressure = first.pressure * i / kPieces;
-        const Vec3 next(tip_lag_at(options, pressure, first.tilt, ahead), -depth_of(options, pressure));
+        const Vec3 next(tip_lag_at(options, pressure, first.tilt, first.roll, ahead), -depth_of(options, pressure));
         gone.push_back(gone.back() + glm::distance(next, foot));
         foot = next;
     }
@@ -204,6 +250,22 @@ void set_down_plumb(StrokeSamples& trace, const HolderOptions& options) {
 
 }  // namespace
 
+StrokeSamples lean_holder(StrokeSamples trace, const HolderOptions& options) {
+    if (!(options.lean > 0) || !trace.flat || trace.samples.empty()) return trace;
+    if (std::ranges::any_of(trace.samples, [](const StrokeSample& s) { return s.tilt != Vec2(0); })) return trace;
+    const double string = lean_string(options);
+    Vec2 before(trace.samples.front().position), ahead = first_direction(trace.samples, kAiming * options.tip_lag_turn);
+    if (ahead == Vec2(0) && options.across) ahead = across_of(trace.samples.front().roll);
+    Vec2 dragged = before - string * ahead;
+    for (StrokeSample& s : trace.samples) {
+        const Vec2 p(s.position);
+        dragged = drag_string(dragged, before, p, string);
+        before = p;
+        s.tilt = lean_of_make(options, s.roll, (p - dragged) / string);
+    }
+    return trace;
+}
+
 StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& options) {
     if (options.tip_lag.empty() || trace.samples.empty() || !trace.flat) return trace;
     // The hand knows where it is going to start: the string is taut from the first touch.
@@ -213,14 +275,15 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     set_down_plumb(trace, options);
     // Over a convex surface a blade's point meets ground that falls ahead of it, however softly it lands: it would
     // slide on ahead of the hand and fall to its side.
-    if ((pressed || options.blade_landing > 0) && sets_out != Vec2(0)) lean_ahead(trace, options, sets_out);
+    const bool leans = options.lean > kLean && glm::dot(trace.samples.front().tilt, sets_out) > kLean;
+    if ((pressed || options.blade_landing > 0) && sets_out != Vec2(0) && !leans) lean_ahead(trace, options, sets_out);
     Vec2 dragged = first - options.tip_lag_turn * sets_out, before = first;
     for (StrokeSample& s : trace.samples) {
         const Vec2 p(s.position);
         dragged = drag_string(dragged, before, p, options.tip_lag_turn);
         before = p;
-        s.position =
-            Vec3(p + tip_lag_at(options, s.pressure, s.tilt, (p - dragged) / options.tip_lag_turn), s.position.z);
+        s.position = Vec3(p + tip_lag_at(options, s.pressure, s.tilt, s.roll, (p - dragged) / options.tip_lag_turn),
+                          s.position.z);
     }
     return trace;
 }

@@ -20,7 +20,8 @@ namespace tuft::stroke {
 
 /// Measures the tip lag of a brush at depths up to its working depth: the distance from the foot of the holder's axis
 /// back to the widest place of the steady contact patch, which lies half a line's width behind its end
-/// (`brush::sweep_depth`). Cost: about 50 ms.
+/// (`brush::sweep_depth`). Of a brush that `bends_across` it is that of a holder that leans as its make does, with the
+/// broad side across the path (`TiltedTipLag::as_held`). Cost: about 50 ms; of a fan 1.5 s.
 std::vector<TipLag> measure_tip_lag(const brush::Preset& preset);
 
 /// Change of a brush's tip lag by a lean of the holder, measured on steady strokes at a grid of leans and depths. A
@@ -34,23 +35,42 @@ class TiltedTipLag {
     /// onto the path. `lean`: radians along the path and to its left, up ∝ normal + tan(lean.x) ahead + tan(lean.y)
     /// left. `depth`: metres of the unbent tip below the surface.
     Vec2 at(double depth, const Vec2& lean);
+    /// Returns the tip lag of a brush that `bends_across`, leaning as its make does; `at` is the change from that.
+    std::vector<TipLag> as_held();
 
   private:
+    // Measured as by `measure_tip_lag`, with the broad side across the path or along it.
     static constexpr std::array kAlong{-0.8, -0.4, -0.2, 0.0, 0.2, 0.4, 0.8};
     static constexpr std::array kAcross{0.0, 0.4, 0.8};
     static constexpr std::array kDepths{0.05, 0.15, 0.3, 0.5, 0.7, 1.0};  // of the working depth
 
     const std::vector<Vec2>& node(std::size_t i, std::size_t j);
     Vec2 of_node(std::size_t i, std::size_t j, double depth);
+    Vec2 of_lean(double depth, const Vec2& lean);
 
     brush::Preset preset_;
     std::mutex mutex_;  // of `nodes_` while one is measured; measured ones do not change
     std::array<std::vector<Vec2>, kAlong.size() * kAcross.size()> nodes_;  // ahead and left by depth
 };
 
-/// Returns the tip lag at one point of a path, metres to the right and down. `tilt`: radians towards right and down, as
-/// in `SurfaceSample`; `ahead`: unit direction of the path in the same axes.
-Vec2 tip_lag_at(const HolderOptions& options, double pressure, const Vec2& tilt, const Vec2& ahead);
+/// Returns the tip lag at one point of a path, metres to the right and down. `tilt` and `roll`: radians, as in
+/// `SurfaceSample`; `ahead`: direction of the path in the same axes, up to 1 long. With `options.across` it is the tip
+/// lag of the part of `ahead` that is across the broad side.
+Vec2 tip_lag_at(const HolderOptions& options, double pressure, const Vec2& tilt, double roll, const Vec2& ahead);
+
+/// Returns the tilt, radians towards right and down, of a holder that leans as its make is held: by `options.lean`
+/// towards `ahead` (as of `tip_lag_at`), or with `options.across` by the part of that across its broad side, so that
+/// along its edge it stands upright.
+Vec2 lean_of_make(const HolderOptions& options, double roll, const Vec2& ahead);
+
+/// Returns the length of the string on which a point is dragged whose direction a make leans in, metres: 0.3 lengths of
+/// the tuft.
+double lean_string(const HolderOptions& options);
+
+/// Leans the holder of a flat trace as its make is held (`lean_of_make`) where the device gave no tilt at all. Ahead is
+/// the direction of a point dragged behind the trace on a `lean_string`, taut from the first touch; of a trace without
+/// a direction, with `options.across`, that of the ferrule's y.
+StrokeSamples lean_holder(StrokeSamples trace, const HolderOptions& options);
 
 /// Speed of setting down, ahead and down together: over the speed of the trace, and the least speed of the trace that
 /// is taken for it, m/s.
@@ -64,13 +84,13 @@ inline constexpr double kHoverTime = 0.05;  ///< seconds of the tip between the 
 /// from the first touch in the initial direction of the trace. Where the path reverses, the tip lag passes through
 /// zero. A trace that begins pressed gets samples before its first one, at the same place and earlier in time, whose
 /// pressure rises to the first; the holder moves at `kSetDownPace` times the trace's speed, so that the tip touches
-/// first and trails. It leans ahead by 0.12 rad meanwhile, and so does that of a blade at any landing, over
-/// `blade_landing`. A holder upright to 0.05 rad sets the brush down plumb and reaches its lean within 0.3 lengths of
-/// the tuft.
+/// first and trails. It leans ahead by 0.12 rad meanwhile where its make does not lean by more, and so does that of a
+/// blade at any landing, over `blade_landing`. A holder upright to 0.05 rad sets the brush down plumb and reaches its
+/// lean within 0.3 lengths of the tuft.
 ///
 /// The hand's speed bounds the holder's. Over a surface of curvature κ, while the tuft is pressed,
 ///
-///     |v_holder| ≤ (1 + tip_lag / tip_lag_turn + 2 κ L + 1.5) |v_path| + 4 (|depth'| + L |tilt'|),
+///     |v_holder| ≤ (1 + tip_lag / tip_lag_turn + 2 κ L + 1.5) |v_path| + 4 (|depth'| + L |tilt'| + L |roll'|),
 ///
 /// with L the tuft's length; above the surface it is at most `hover / kHoverTime` faster than the hand.
 StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& options);
