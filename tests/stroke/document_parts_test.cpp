@@ -2,6 +2,8 @@
 
 #include "sheet.h"
 #include "stroke/document/undo_history.h"
+#include "stroke/drawing/line_width.h"
+#include "stroke/placement/tip_lag.h"
 
 /// The parts of a document, each on its own.
 namespace tuft::stroke {
@@ -121,6 +123,26 @@ TEST(Materials, ABrushInThePlaceOfAnotherHasATipLagOfItsOwn) {
     wide.name = "wolf-small";
     materials.use(wide);
     EXPECT_GT(longest(), 1.2 * small) << "of the larger brush";
+}
+
+// Paths are fitted by drawings on a plane: a hand that sets down elsewhere there draws heads that are painted
+// elsewhere.
+TEST(Materials, TheHandOfADrawingOnAPlaneIsThatWhichPaints) {
+    const Model model = sheet();
+    const LayerStack layers(model.texels.n_slots());
+    const Materials materials("porcelain", layers);
+    WidthTables tables;
+    StrokeSamples pressed;
+    for (int i = 0; i <= 20; ++i)
+        pressed.samples.push_back({.time = 0.01 * i, .position = {4e-4 * i, 0, 0}, .pressure = 0.3});
+    const auto hand = [&](const HolderOptions& holder) { return compensate_tip_lag(pressed, holder).samples; };
+    const std::vector<StrokeSample> painted = hand(materials.holder("wolf-small", *model.mesh, true)),
+                                    drawn = hand(tables.holder("wolf-small"));
+    ASSERT_EQ(drawn.size(), painted.size());
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+        EXPECT_EQ(drawn[i].position, painted[i].position) << i;
+        EXPECT_EQ(drawn[i].tilt, painted[i].tilt) << i;
+    }
 }
 
 TEST(Palette, IsMadeWhenItIsUsed) {

@@ -17,7 +17,7 @@ With --drawn FOLDER, the pictures of `measure_writer score --drawn` are scored a
 Needs numpy and Pillow."""
 import argparse, json, os, random, resource, subprocess, sys, tempfile
 import numpy as np
-from PIL import Image, ImageDraw
+from PIL import Image
 
 N = 1280          # pixels of the common raster, one unit each
 MARGIN = 128
@@ -41,11 +41,24 @@ def outline(d):
         if n: cur = p[-1]
     return rings + ([ring] if ring else [])
 
+def filled(rings, n):
+    """Pixels of an n × n raster whose centres lie in the rings (nonzero). ImageDraw.polygon also takes those that an edge touches:
+    121 of a square of 10 × 10, and 1.4 % more than the area of a character."""
+    turns = np.zeros((n, n + 1), np.int32)
+    for ring in rings:
+        for (x0, y0), (x1, y1) in zip(ring, ring[1:] + ring[:1]):
+            if y0 == y1: continue
+            rows = np.arange(max(0, int(np.ceil(min(y0, y1) - .5))), min(n, int(np.ceil(max(y0, y1) - .5))))
+            x = x0 + (rows + .5 - y0)/(y1 - y0)*(x1 - x0)
+            np.add.at(turns, (rows, np.clip(np.ceil(x - .5), 0, n).astype(int)), 1 if y1 > y0 else -1)
+    return np.cumsum(turns[:, :-1], 1) != 0
+
+assert filled([[(10, 10), (20, 10), (20, 20), (10, 20)]], 40).sum() == 100
+
 def truth(character):
-    im = Image.new('L', (2*N, 2*N), 0); draw = ImageDraw.Draw(im)
-    for d in character['strokes']:
-        for ring in outline(d): draw.polygon([(2*(x+MARGIN), 2*(900-y+MARGIN)) for x, y in ring], fill=255)
-    return np.asarray(im.resize((N, N), Image.BOX)) > 127
+    T = np.zeros((2*N, 2*N), bool)
+    for d in character['strokes']: T |= filled([[(2*(x+MARGIN), 2*(900-y+MARGIN)) for x, y in ring] for ring in outline(d)], 2*N)
+    return T.reshape(N, 2, N, 2).mean((1, 3)) >= .5
 
 def best_match(T, image):
     """The painted raster in the frame of T, and its IoU."""

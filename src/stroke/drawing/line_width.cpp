@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <span>
 
 #include "brush/calibration/sweep.h"
@@ -9,6 +10,7 @@
 #include "stroke/gesture/tractrix.h"
 #include "stroke/placement/holder.h"
 #include "stroke/placement/placement.h"
+#include "stroke/placement/tip_lag.h"
 
 namespace tuft::stroke {
 
@@ -62,10 +64,10 @@ const HolderOptions& WidthTables::holder(const std::string& brush) {
     if (at != holds_.end()) return at->second;
     HolderOptions options = holder_options(preset(brush));
     options.tip_lag = measure_tip_lag(preset(brush));
-    if (options.lean > 0) {
-        TiltedTipLag& tilted = tilted_.try_emplace(brush, preset(brush)).first->second;
-        options.tip_lag_change = [&tilted](double depth, const Vec2& lean) { return tilted.at(depth, lean); };
-    }
+    // A hand that sets down pressed leans ahead.
+    options.tip_lag_change = [tilted = std::make_shared<TiltedTipLag>(preset(brush))](double depth, const Vec2& lean) {
+        return tilted->at(depth, lean);
+    };
     return holds_.emplace(brush, std::move(options)).first->second;
 }
 

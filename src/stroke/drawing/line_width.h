@@ -7,7 +7,6 @@
 #include "brush/preset/preset.h"
 #include "stroke/journal/entry/samples.h"
 #include "stroke/placement/placement.h"
-#include "stroke/placement/tip_lag.h"
 
 /// \file
 /// Widths of lines: the pressure and the size of a brush that draw a given width. Called by drawing.h and long_lines.h.
@@ -44,15 +43,14 @@ class WidthTables {
     /// Returns the widths of a brush, measured when they are first requested, and its preset.
     const LineWidths& of(const std::string& brush);
     const brush::Preset& preset(const std::string& brush);
-    /// Returns options of a holder over a plane that compensates the tip lag: upright (`measure_tip_lag`), or
-    /// leaning as its make is held. They refer to these tables.
+    /// Returns options of a holder over a plane that compensates the tip lag (`measure_tip_lag`, `TiltedTipLag`), as
+    /// `Materials::holder` does where a stroke is painted.
     const HolderOptions& holder(const std::string& brush);
 
   private:
     std::map<std::string, brush::Preset> presets_;
     std::map<std::string, LineWidths> known_;
     std::map<std::string, HolderOptions> holds_;
-    std::map<std::string, TiltedTipLag> tilted_;
 };
 
 /// Ratio of neighbouring sizes of a brush that are chosen for lines: few brushes for many widths.
