@@ -62,6 +62,16 @@ TEST_F(Device, AnInterruptedTestPrintsWhatItHas) {
     EXPECT_FALSE(out.contains("stop_ms"));
 }
 
+// On a machine where it hardly runs: it is halted for longer than other work has after a signal.
+TEST_F(Device, AnInterruptedTestPrintsWhatItHasHoweverSlowItIs) {
+    const test::Ran ran =
+        tuft("device test --simulate touch --model sheet --threads 1 --json --hands 100000 >" + path("figures") +
+             " 2>/dev/null & p=$!; sleep 0.3; kill -INT $p; sleep 0.005; kill -STOP $p; sleep 0.9; "
+             "kill -CONT $p; wait $p");
+    EXPECT_EQ(ran.status, 1);
+    EXPECT_FALSE(nlohmann::json::parse(read(path("figures")))["complete"]);
+}
+
 TEST_F(Device, ARecordingPlaysAgainToTheBit) {
     test::Ran ran = tuft("device record --simulate touch --seconds 2.5 -o '" + path("a.csv") + "' --json");
     ASSERT_EQ(ran.status, 0) << ran.err;

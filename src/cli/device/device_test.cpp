@@ -113,6 +113,7 @@ int test_device(const DeviceWork& a) {
     nlohmann::json out;
     if (!a.arm.simulate.empty()) {
         haptic::device_preset(a.arm.simulate);
+        const LastWords figures;
         const Trials trials = run_trials(a, places, console);
         out = to_json(trials);
         if (!trials.complete) {

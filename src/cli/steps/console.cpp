@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -23,6 +24,9 @@ constexpr std::size_t kLongestNote = 1000;  // bytes
 
 /// For work to unwind by itself: a second less what the machine may be busy with.
 constexpr std::chrono::nanoseconds kPatience = 650ms, kTogether = 50ms;
+constexpr std::chrono::nanoseconds kLongPatience = 10s;  // for `LastWords`, on a machine where the program hardly runs
+
+std::atomic<int> g_last_words{0};
 
 /// The next of these signals, or 0 after `patience`.
 int next_signal(const sigset_t& signals, std::chrono::nanoseconds patience) {
@@ -43,7 +47,9 @@ void await_signals(const sigset_t& signals) {
     std::this_thread::sleep_for(kTogether);
     while (next_signal(signals, 0ns) > 0) {
     }
-    const int second = next_signal(signals, kPatience);
+    int second = next_signal(signals, kPatience);
+    for (auto waited = kPatience; second == 0 && g_last_words > 0 && waited < kLongPatience; waited += kTogether)
+        second = next_signal(signals, kTogether);
     remove_unfinished();
     if (second > 0) {  // ends the ordinary way
         std::signal(second, SIG_DFL);
@@ -56,6 +62,14 @@ void await_signals(const sigset_t& signals) {
 }
 
 }  // namespace
+
+LastWords::LastWords() {
+    ++g_last_words;
+}
+
+LastWords::~LastWords() {
+    --g_last_words;
+}
 
 struct Console::State {
     using Clock = std::chrono::steady_clock;

@@ -10,8 +10,8 @@
 namespace tuft::cli {
 
 /// Makes interrupt, termination and hang-up signals cancel all work (core/system/interrupt.h). The program ends at
-/// once, half-written files removed, after a second signal or 0.7 s without an end. Call it once, before any other
-/// thread starts.
+/// once, half-written files removed, after a second signal or 0.7 s without an end (`LastWords`: 10 s). Call it once,
+/// before any other thread starts.
 void listen_for_signals();
 
 /// Progress bars and notes on standard error. The bar is drawn only on a terminal. Main thread, except the callback of
@@ -31,6 +31,15 @@ class Console {
   private:
     struct State;
     std::unique_ptr<State> state_;
+};
+
+/// While it lives, interrupted work has ten seconds to print what it has. A second signal ends it at once.
+class LastWords {
+  public:
+    LastWords();
+    ~LastWords();
+    LastWords(const LastWords&) = delete;
+    LastWords& operator=(const LastWords&) = delete;
 };
 
 }  // namespace tuft::cli
