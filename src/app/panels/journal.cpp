@@ -373,7 +373,10 @@ void draw_row(const JournalParts& s, const JournalRow& row) {
         draw_group(s, lines, at, size);
         const auto n = static_cast<std::size_t>(
             std::count_if(lines.begin(), lines.end(), [](const StrokeLine* l) { return is_stroke(*l); }));
-        text = {group_title(s.ui, newest.group.name), s.ui.sentence(Message(n == 1 ? "{} stroke" : "{} strokes", n))};
+        // A drawing in its colours has areas alone.
+        const Message count = n == 0 ? Message(lines.size() == 1 ? "{} area" : "{} areas", lines.size())
+                                     : Message(n == 1 ? "{} stroke" : "{} strokes", n);
+        text = {group_title(s.ui, newest.group.name), s.ui.sentence(count)};
     } else {
         draw_entry(s, newest, at, size);
         text = text_of(s, newest, row.lines.front() + 1);
