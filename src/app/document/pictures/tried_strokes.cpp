@@ -10,6 +10,7 @@ namespace {
 
 using pictures::TriedStroke;
 
+constexpr std::chrono::seconds kRest{1};
 constexpr std::size_t kBytes = std::size_t{3} * TriedStroke::kWidth * TriedStroke::kHeight;
 
 }  // namespace
@@ -24,24 +25,29 @@ unsigned TriedStrokes::texture(const std::string& brush, std::uint64_t reading) 
         app::release(p.texture);
         p.picture.rgb.clear();
         p.reading = reading;
-        wanted_.push_back({brush, reading});
+        wanted_.push_back({.brush = brush, .reading = reading});
     }
     if (!p.texture && !p.picture.rgb.empty()) upload(p.texture, p.picture);
     return p.texture;
 }
 
 void TriedStrokes::update(bool may_paint) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!may_paint) busy_at_ = now;
     if (painting_.valid()) {
         if (!may_paint) stop_ = true;
         if (painting_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
         Painted painted = painting_.get();
         if (painted.stopped)
             wanted_.push_front(std::move(painted.wish));
+        else if (painted.missing)
+            wanted_.push_back({std::move(painted.wish.brush), painted.wish.reading, true});
         else if (Picture& p = pictures_[painted.wish.brush]; p.reading == painted.wish.reading)
             p.picture.rgb = std::move(painted.rgb);
     }
     std::erase_if(wanted_, [&](const Wish& wish) { return pictures_[wish.brush].reading != wish.reading; });
-    if (!may_paint || wanted_.empty()) return;
+    // Those that are not known to be missing in the cache come first.
+    if (!may_paint || wanted_.empty() || (wanted_.front().to_paint && now - busy_at_ < kRest)) return;
     stop_ = false;
     painting_ = std::async(std::launch::async, [this, wish = wanted_.front()] { return paint(wish); });
     wanted_.pop_front();
@@ -56,13 +62,18 @@ TriedStrokes::Painted TriedStrokes::paint(Wish wish) const {
     try {
         const brush::Preset preset = brush::load_preset(out.wish.brush);
         CacheKey key("tried stroke 2");
-        key.add_text(brush::preset_toml(preset));
+        brush::Preset content = preset;
+        content.name.clear();
+        content.note.clear();
+        key.add_text(brush::preset_toml(content));
         const auto take = [&](CacheReader& in) {
             std::vector<std::uint8_t> rgb = in.get<std::uint8_t>();
             if (rgb.size() != kBytes) CacheReader::fail();
             out.rgb = std::move(rgb);
         };
         if (cache_.read(key, take)) return out;
+        out.missing = !out.wish.to_paint;
+        if (out.missing) return out;
         out.rgb = pictures::paint_tried_stroke(preset, [this](std::string_view, double) { return !stop_.load(); }).rgb;
         cache_.write(key, [&](CacheWriter& to) { to.put(out.rgb); });
     } catch (const Cancelled&) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <future>
@@ -17,7 +18,9 @@
 namespace tuft::app {
 
 /// Paints a stroke of a brush when its picture is first asked for, one at a time, and stores it in the user's cache
-/// folder by the content of the preset. `texture` and `release` need the window's OpenGL context.
+/// folder by the content of the preset without its name. One that is not stored is painted when nothing else was to do
+/// for a second: a program that starts, and a hand that paints, have the processor for themselves. `texture` and
+/// `release` need the window's OpenGL context.
 class TriedStrokes {
   public:
     TriedStrokes() : cache_(cache_folder("brushes")) {}
@@ -44,17 +47,20 @@ class TriedStrokes {
     struct Wish {
         std::string brush;
         std::uint64_t reading = 0;
+        bool to_paint = false;  ///< it is not stored
     };
     struct Painted {
         Wish wish;
         std::vector<std::uint8_t> rgb;
         bool stopped = false;
+        bool missing = false;  ///< from the cache; it is painted later
     };
     Painted paint(Wish wish) const;
 
     DiskCache cache_;
     std::map<std::string, Picture> pictures_;  ///< of all that were asked for
     std::deque<Wish> wanted_;
+    std::chrono::steady_clock::time_point busy_at_ = std::chrono::steady_clock::now();  ///< something else was to do
     std::atomic<bool> stop_{false};
     std::future<Painted> painting_;
 };
