@@ -132,6 +132,32 @@ TEST(TipLag, AFanThatNobodyLeansDrawsAnEvenBandFromItsStart) {
     EXPECT_EQ(column(-5e-3).second, 0);
 }
 
+TEST(TipLag, ADotOfAFanIsOnePieceWhereItIsSet) {
+    constexpr double kPress = 0.3, kCell = 2e-4;
+    const brush::Preset fan = brush::load_preset("fan-30");
+    HolderOptions options = holder_options(fan);
+    const double depth = kPress * options.working_depth;
+    options.tip_lag = {{0, 0}, {depth, brush::line_place(fan, depth, {fan.lean, 0}, 0.5 * std::numbers::pi).behind}};
+    StrokeSamples trace;
+    for (int i = 0; i <= 20; ++i)
+        trace.samples.push_back(
+            {.time = 0.01 * i, .pressure = kPress * (1 - std::abs(0.1 * i - 1)), .roll = 0.5 * std::numbers::pi});
+    const PlaneInk ink = plane_ink(trace, fan, options, 5e-4, kCell);
+    Vec2 sum{0};
+    double cells = 0;
+    std::array<double, 2> middle{1, -1};  // along x, of the middle of the fan
+    for (double y = -0.02; y < 0.02; y += kCell)
+        for (double x = -0.015; x < 0.015; x += kCell) {
+            if (!(ink.at({x, y}) > 0.5)) continue;
+            sum += Vec2(x, y), ++cells;
+            if (std::abs(y) < 2e-3) middle = {std::min(middle[0], x), std::max(middle[1], x)};
+        }
+    // Hair that is pressed lies 1.3 mm short of where dragged hair lies. Upright the dot is a T, 10 mm long.
+    EXPECT_NEAR(sum.x / cells, 0, 1.5e-3);
+    EXPECT_NEAR(sum.y / cells, 0, 1e-4);
+    EXPECT_LT(middle[1] - middle[0], 5e-3);
+}
+
 TEST(TipLag, AMakeLeansAcrossItsBroadSideUnlessAPenTiltsIt) {
     HolderOptions options{.tuft_length = 0.01, .lean = 0.4, .across = true};
     const auto tilts = [&](double roll, const Vec2& tilt = Vec2{0}) {

@@ -248,15 +248,23 @@ void set_down_plumb(StrokeSamples& trace, const HolderOptions& options) {
     }
 }
 
+/// Direction in which a hand sets out; where its trace does not leave the first place, hair that bends across its broad
+/// side is set down towards the side that the holder leans to, or y.
+Vec2 sets_out(std::span<const StrokeSample> samples, const HolderOptions& options) {
+    const Vec2 ahead = first_direction(samples, kAiming * options.tip_lag_turn);
+    if (ahead != Vec2(0) || !options.across) return ahead;
+    const Vec2 across = across_of(samples.front().roll);
+    return glm::dot(samples.front().tilt, across) < 0 ? -across : across;
+}
+
 }  // namespace
 
 StrokeSamples lean_holder(StrokeSamples trace, const HolderOptions& options) {
     if (!(options.lean > 0) || !trace.flat || trace.samples.empty()) return trace;
     if (std::ranges::any_of(trace.samples, [](const StrokeSample& s) { return s.tilt != Vec2(0); })) return trace;
     const double string = lean_string(options);
-    Vec2 before(trace.samples.front().position), ahead = first_direction(trace.samples, kAiming * options.tip_lag_turn);
-    if (ahead == Vec2(0) && options.across) ahead = across_of(trace.samples.front().roll);
-    Vec2 dragged = before - string * ahead;
+    Vec2 before(trace.samples.front().position);
+    Vec2 dragged = before - string * sets_out(trace.samples, options);
     for (StrokeSample& s : trace.samples) {
         const Vec2 p(s.position);
         dragged = drag_string(dragged, before, p, string);
@@ -270,14 +278,14 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     if (options.tip_lag.empty() || trace.samples.empty() || !trace.flat) return trace;
     // The hand knows where it is going to start: the string is taut from the first touch.
     const Vec2 first(trace.samples.front().position);
-    const Vec2 sets_out = first_direction(trace.samples, kAiming * options.tip_lag_turn);
-    const bool pressed = set_down(trace, options, sets_out);
+    const Vec2 ahead = sets_out(trace.samples, options);
+    const bool pressed = set_down(trace, options, ahead);
     set_down_plumb(trace, options);
     // Over a convex surface a blade's point meets ground that falls ahead of it, however softly it lands: it would
     // slide on ahead of the hand and fall to its side.
-    const bool leans = options.lean > kLean && glm::dot(trace.samples.front().tilt, sets_out) > kLean;
-    if ((pressed || options.blade_landing > 0) && sets_out != Vec2(0) && !leans) lean_ahead(trace, options, sets_out);
-    Vec2 dragged = first - options.tip_lag_turn * sets_out, before = first;
+    const bool leans = options.lean > kLean && glm::dot(trace.samples.front().tilt, ahead) > kLean;
+    if ((pressed || options.blade_landing > 0) && ahead != Vec2(0) && !leans) lean_ahead(trace, options, ahead);
+    Vec2 dragged = first - options.tip_lag_turn * ahead, before = first;
     for (StrokeSample& s : trace.samples) {
         const Vec2 p(s.position);
         dragged = drag_string(dragged, before, p, options.tip_lag_turn);

@@ -68,8 +68,8 @@ Vec2 lean_of_make(const HolderOptions& options, double roll, const Vec2& ahead);
 double lean_string(const HolderOptions& options);
 
 /// Leans the holder of a flat trace as its make is held (`lean_of_make`) where the device gave no tilt at all. Ahead is
-/// the direction of a point dragged behind the trace on a `lean_string`, taut from the first touch; of a trace without
-/// a direction, with `options.across`, that of the ferrule's y.
+/// the direction of a point dragged behind the trace on a `lean_string`, taut from the first touch; of a dot, with
+/// `options.across`, that of the ferrule's y.
 StrokeSamples lean_holder(StrokeSamples trace, const HolderOptions& options);
 
 /// Speed of setting down, ahead and down together: over the speed of the trace, and the least speed of the trace that
@@ -81,12 +81,12 @@ inline constexpr double kHoverTime = 0.05;  ///< seconds of the tip between the 
 /// lean, so that the ink lies where the trace was.
 ///
 /// Ahead is the direction of a point dragged behind the trace on a string of length `tip_lag_turn` (a tractrix), taut
-/// from the first touch in the initial direction of the trace. Where the path reverses, the tip lag passes through
-/// zero. A trace that begins pressed gets samples before its first one, at the same place and earlier in time, whose
-/// pressure rises to the first; the holder moves at `kSetDownPace` times the trace's speed, so that the tip touches
-/// first and trails. It leans ahead by 0.12 rad meanwhile where its make does not lean by more, and so does that of a
-/// blade at any landing, over `blade_landing`. A holder upright to 0.05 rad sets the brush down plumb and reaches its
-/// lean within 0.3 lengths of the tuft.
+/// from the first touch in the initial direction of the trace; of a dot, with `options.across`, in that of the lean.
+/// Where the path reverses, the tip lag passes through zero. A trace that begins pressed gets samples before its first
+/// one, at the same place and earlier in time, whose pressure rises to the first; the holder moves at `kSetDownPace`
+/// times the trace's speed, so that the tip touches first and trails. It leans ahead by 0.12 rad meanwhile where its
+/// make does not lean by more, and so does that of a blade at any landing, over `blade_landing`. A holder upright to
+/// 0.05 rad sets the brush down plumb and reaches its lean within 0.3 lengths of the tuft.
 ///
 /// The hand's speed bounds the holder's. Over a surface of curvature κ, while the tuft is pressed,
 ///
