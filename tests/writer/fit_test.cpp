@@ -177,7 +177,7 @@ TEST(Fit, AStraightBarIsCoveredFromAWrongStart) {
     fill(target.wanted, std::span(&bar, 1));
     std::vector<Station> start;
     for (double x = 100; x <= 500; x += 8) start.push_back({{x, 112}, 14});  // 12 units beside it, too thin
-    const FitResult once = fit_stations(start, target, hand, {}, {.tries = 1, .knuckle_tries = 0});
+    const FitResult once = fit_stations(start, target, hand, {}, {.tries = 1, .last_tries = 0, .knuckle_tries = 0});
     const FitResult fitted = fit_stations(start, target, hand, {}, {.tries = 12});
     EXPECT_LT(once.iou, 0.6);
     // A cell along both edges, 2 of 44 units, and 6 units at either end, 12 of 444: where a tuft lands and lifts.
@@ -198,12 +198,38 @@ TEST(Fit, OtherBeginsAndMannersNeverLose) {
         start.push_back({{std::lerp(380, 328, t), std::lerp(102, 220, t)}, std::lerp(20, 5, t)});
         other.push_back({{std::lerp(395, 328, t), std::lerp(95, 220, t)}, std::lerp(20, 5, t)});
     }
-    const FitResult first = fit_stations(start, target, hand, {}, {.tries = 4, .weak = 0, .knuckle_tries = 0}, other),
-                    best = fit_stations(start, target, hand, {}, {.tries = 4, .weak = 1, .knuckle_tries = 0}, other);
+    const FitResult first = fit_stations(start, target, hand, {},
+                                         {.tries = 4, .weak = 0, .last_tries = 0, .knuckle_tries = 0}, other),
+                    best = fit_stations(start, target, hand, {},
+                                        {.tries = 4, .weak = 1, .last_tries = 0, .knuckle_tries = 0}, other);
     EXPECT_LE(first.tries, 4);
     EXPECT_GT(best.tries, first.tries);
     EXPECT_GE(best.score, first.score);
     EXPECT_GT(first.score, 0.5);  // a hook that a reader sees
+}
+
+// A brush paints in steps of about a unit, and its ink depends on the step: corrected in such steps, a path draws less
+// wrong ink in them.
+TEST(Fit, TheLastTriesLessenTheWrongInkOfAPaintersSteps) {
+    stroke::WidthTables tables;
+    const std::string brush = "goat-medium";
+    const BrushHand hand{tables.preset(brush), tables.of(brush), tables.holder(brush), 1.3e-4};
+    const Ring bow{{100, 80}, {200, 95}, {300, 80}, {380, 50}, {390, 60}, {310, 125}, {200, 138}, {100, 120}};
+    FitTarget target{.wanted = cells_over(std::span(&bow, 1), 2, 80)};
+    fill(target.wanted, std::span(&bow, 1));
+    std::vector<Station> start;
+    for (double x = 104; x <= 384; x += 8) start.push_back({{x, 112 - 0.0012 * (x - 200) * (x - 200)}, 18});
+    const auto wrong = [&](int last_tries) {
+        const FitResult fitted = fit_stations(start, target, hand, {}, {.last_tries = last_tries, .knuckle_tries = 0});
+        const Cells& cells = target.wanted;
+        const stroke::PlaneInk ink = draw_on_plane(fitted.stations, hand, {}, 1, cells.cell);
+        int n = 0;
+        for (int j = 0; j < cells.height; ++j)
+            for (int i = 0; i < cells.width; ++i) n += cells.at(i, j) != (ink.at(cells.centre(i, j) * hand.unit) > 0.5);
+        return n;
+    };
+    const int coarse = wrong(0), last = wrong(2);
+    EXPECT_LT(last, 0.95 * coarse) << "a twentieth of " << coarse << " cells: half of what it gains in characters";
 }
 
 // Where no try meets the target, the path is the one that was given.

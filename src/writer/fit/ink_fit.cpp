@@ -21,6 +21,7 @@ constexpr double kSoft = 2;              // stations of the Gaussian that smooth
 constexpr double kSharp = 1.6;           // radians of a turn at which corrections are smoothed less
 constexpr double kCornerSoft = 1.2;      // stations, there
 constexpr std::size_t kCornerReach = 3;  // stations
+constexpr double kLastSoft = 1.2;        // stations, at most, in the last corrections
 constexpr double kNeedle = 24;           // units about an end in which its ink must not reach further than wanted
 constexpr double kNeedleBack = 0.6;      // part of that taken back at once
 constexpr float kDeepest = 24;           // units of depth that count
@@ -186,6 +187,13 @@ std::vector<double> softness_of(const std::vector<Station>& s) {
     return soft;
 }
 
+/// That of the last corrections, which follow what is narrow.
+std::vector<double> last_softness_of(const std::vector<Station>& s) {
+    std::vector<double> soft = softness_of(s);
+    for (double& stations : soft) stations = std::min(stations, kLastSoft);
+    return soft;
+}
+
 /// Moves the stations of the head as one.
 void keep_head(std::vector<Station>& s, const std::vector<Station>& first) {
     if (s.size() <= 2 * kHead) return;
@@ -229,14 +237,16 @@ stroke::PlaneInk draw_on_plane(std::span<const Station> stations, const BrushHan
 FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& target, const BrushHand& hand,
                        const Pace& pace, const FitOptions& options, const std::vector<Station>& other) {
     const std::vector<float> depths = depths_of(target.wanted);
-    const auto try_out = [&](const std::vector<Station>& next, const std::vector<Station>& sides, int t) {
+    const auto try_in = [&](double step, const std::vector<Station>& next, const std::vector<Station>& sides) {
         check_interrupt();
-        const double step = t <= kRough ? kRougher * options.step : options.step;
         const stroke::StrokeSamples trace = samples_of(next, hand, pace);
         const stroke::PlaneInk ink =
             stroke::plane_ink(trace, hand.preset, hand.hold, step * hand.unit, target.wanted.cell * hand.unit);
         const std::vector<float> coverage = coverage_by(ink, target.wanted);
         return Try{score_of(target, depths, coverage), errors_of(next, sides, target, coverage, ink, trace, hand.unit)};
+    };
+    const auto try_out = [&](const std::vector<Station>& next, const std::vector<Station>& sides, int t) {
+        return try_in(t <= kRough ? kRougher * options.step : options.step, next, sides);
     };
     FitResult best{.stations = stations};
     const auto fit_from = [&](const std::vector<Station>& first, const Try& first_try, const Manner& manner) {
@@ -266,7 +276,19 @@ FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& ta
         for (const Manner& manner : kManners)
             if (&manner == kManners || best.iou < options.weak) fit_from(*begin, first_try, manner);
     }
-    return take_off_knuckles(std::move(best), target, depths, hand, pace, options);
+    best = take_off_knuckles(std::move(best), target, depths, hand, pace, options);
+    // Ink depends on the step: in the steps of a painter it lies a unit beside that of the tries.
+    const std::vector<Station> before_last = best.stations;
+    const std::vector<double> soft = last_softness_of(before_last);
+    std::vector<Station> next = before_last;
+    for (int t = 1; t <= options.last_tries; ++t) {
+        const Try now = try_in(options.last_step, next, next);
+        ++best.tries;
+        if (t == 1 || now.reached.score > best.score)
+            best.stations = next, best.iou = now.reached.iou, best.score = now.reached.score;
+        if (t < options.last_tries) correct(next, before_last, soft, now.errors, kManners[0]);
+    }
+    return best;
 }
 
 }  // namespace tuft::writer

@@ -27,6 +27,8 @@ struct FitOptions {
     double fine_step = 3;  ///< units, of the last drawings; ink depends on the step, by .005 of the overlap from 5 to 1
     double weak = 0.955;   ///< overlap below which another manner and another begin are tried
     int idle = 4;          ///< tries without a gain after which it stops
+    int last_tries = 2;    ///< drawings after those that take knuckles off; each but the first is corrected
+    double last_step = 2;  ///< units, of these
     int knuckle_tries = 9;  ///< drawings at most, after those, in fine steps, that take knuckles off (knuckle_fit.h)
 };
 
@@ -51,7 +53,8 @@ struct FitResult {
 /// best try overlaps by less than `options.weak`, it begins again in another manner (left and right are those of the
 /// first path, and the first three stations move as one), and from `other`, if that is not empty, in both. A begin in a
 /// manner ends early where its score is above 0.98 and a try gains less than 0.002, and where after t tries it is
-/// behind the best of the others by more than 0.06 / t.
+/// behind the best of the others by more than 0.06 / t. At last knuckles are taken off, and the path is corrected in
+/// steps nearly as fine as those of painting, smoothed over at most 1.2 stations.
 FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& target, const BrushHand& hand,
                        const Pace& pace, const FitOptions& options = {}, const std::vector<Station>& other = {});
 
