@@ -16,7 +16,8 @@ tuft_version_in(polyclipping/clipper.hpp "define CLIPPER_VERSION \"([0-9.]+)\"" 
 tuft_version_in(OpenMesh/Core/System/config.h "^#define OM_VERSION 0x([0-9]+)0([0-9])00$" OpenMesh_VERSION)
 
 set(tuft_library_versions)
-foreach(library assimp CGAL CLI11 draco Eigen3 embree fmt fontconfig Freetype glm harfbuzz meshoptimizer nlohmann_json OpenCASCADE OpenImageIO OpenMesh podofo polyclipping pugixml SQLite3 SQLiteCpp TBB
+set(PNG_VERSION ${PNG_VERSION_STRING})
+foreach(library assimp CGAL CLI11 draco Eigen3 embree fmt fontconfig Freetype glm harfbuzz meshoptimizer nlohmann_json OpenCASCADE OpenImageIO OpenMesh PNG podofo polyclipping pugixml SQLite3 SQLiteCpp TBB
     TinyGLTF tomlplusplus xxhash zstd glfw3 imgui epoxy spnav)
   if(${library}_VERSION)
     string(APPEND tuft_library_versions "        {\"${library}\", \"${${library}_VERSION}\"},\n")

@@ -1,11 +1,14 @@
 #include "io/image/image.h"
 
 #include <gtest/gtest.h>
+#include <png.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <functional>
 
 #include "core/error.h"
 #include "core/files/files.h"
@@ -48,6 +51,92 @@ TEST(Image, Png16BringsBackEveryValue) {
         const Image16 image = noise<std::uint16_t>(19, 33, channels, channels);
         write_image(folder / "a.png", view_of(image));
         EXPECT_EQ(read_image16(folder / "a.png"), image) << channels;
+    }
+}
+
+/// Writes a 5 × 3 picture as others store theirs. Samples are packed into rows from the highest bit on.
+void write_foreign_png(const std::filesystem::path& path, int type, int bits, bool interlaced, bool one_transparent,
+                       const std::function<int(int x, int y, int channel)>& sample) {
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+    png_infop info = png_create_info_struct(png);
+    std::FILE* file = std::fopen(path.c_str(), "wb");
+    png_init_io(png, file);
+    png_set_IHDR(png, info, 5, 3, bits, type, interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE, 0, 0);
+    const png_color colours[3] = {{10, 20, 30}, {40, 50, 60}, {200, 100, 0}};
+    const png_byte alphas[2] = {255, 77};
+    png_color_16 clear{};
+    clear.gray = 1;
+    if (type == PNG_COLOR_TYPE_PALETTE) png_set_PLTE(png, info, colours, 3);
+    if (one_transparent) png_set_tRNS(png, info, alphas, 2, &clear);
+    const int channels = png_get_channels(png, info);
+    std::vector<png_byte> pixels(3 * png_get_rowbytes(png, info));
+    std::vector<png_bytep> rows;
+    for (int y = 0; y < 3; ++y) {
+        rows.push_back(pixels.data() + y * png_get_rowbytes(png, info));
+        for (int i = 0; i < 5 * channels; ++i)
+            for (int bit = 0; bit < bits; ++bit)
+                if (sample(i / channels, y, i % channels) >> (bits - 1 - bit) & 1)
+                    rows[y][(i * bits + bit) / 8] |= static_cast<png_byte>(0x80 >> (i * bits + bit) % 8);
+    }
+    png_set_rows(png, info, rows.data());
+    png_write_png(png, info, PNG_TRANSFORM_IDENTITY, nullptr);
+    png_destroy_write_struct(&png, &info);
+    std::fclose(file);
+}
+
+TEST(Image, PngOfEveryKindIsReadAsItsStandardSays) {
+    const Folder folder("foreign");
+    const std::filesystem::path path = folder / "a.png";
+    const auto level = [](int x, int y, int channel) { return (x * 7 + y * 13 + channel * 29 + 5) % 251; };
+    for (const bool interlaced : {false, true}) {
+        for (const int bits : {1, 2, 4, 8}) {  // grey: a sample v of b bits is v / (2^b − 1)
+            const int top = (1 << bits) - 1;
+            write_foreign_png(path, PNG_COLOR_TYPE_GRAY, bits, interlaced, false,
+                              [&](int x, int y, int c) { return level(x, y, c) & top; });
+            const Image8 grey = read_image8(path);
+            const Image16 wide = read_image16(path);
+            const ImageF real = read_image_float(path);
+            ASSERT_EQ(grey.channels, 1);
+            EXPECT_EQ(grey.channel_names, std::vector<std::string>{"Y"});
+            for (int i = 0; i < 15; ++i) {
+                const int v = level(i % 5, i / 5, 0) & top;
+                EXPECT_EQ(grey.pixels[i], v * 255 / top);
+                EXPECT_EQ(wide.pixels[i], v * 65535 / top);
+                EXPECT_FLOAT_EQ(real.pixels[i], static_cast<float>(v) / static_cast<float>(top));
+            }
+        }
+        for (const bool clear : {false, true}) {
+            for (const int bits : {2, 8}) {  // a palette
+                write_foreign_png(path, PNG_COLOR_TYPE_PALETTE, bits, interlaced, clear,
+                                  [&](int x, int y, int c) { return level(x, y, c) % 3; });
+                const Image8 image = read_image8(path);
+                ASSERT_EQ(image.channels, clear ? 4 : 3);
+                const int colours[3][4] = {{10, 20, 30, 255}, {40, 50, 60, 77}, {200, 100, 0, 255}};
+                for (int i = 0; i < 15 * image.channels; ++i)
+                    EXPECT_EQ(
+                        image.pixels[i],
+                        colours[level(i / image.channels % 5, i / image.channels / 5, 0) % 3][i % image.channels]);
+            }
+        }
+        write_foreign_png(path, PNG_COLOR_TYPE_GRAY, 8, interlaced, true, [](int x, int, int) { return x; });
+        const Image8 keyed = read_image8(path);  // one level is transparent
+        ASSERT_EQ(keyed.channels, 2);
+        for (int i = 0; i < 15; ++i) {
+            EXPECT_EQ(keyed.pixels[2 * i], i % 5);
+            EXPECT_EQ(keyed.pixels[2 * i + 1], i % 5 == 1 ? 0 : 255);
+        }
+        const auto wide_level = [&](int x, int y, int c) { return level(x, y, c) * 257 + 100; };
+        write_foreign_png(path, PNG_COLOR_TYPE_RGB_ALPHA, 16, interlaced, false, wide_level);
+        const Image16 wide = read_image16(path);
+        const Image8 narrow = read_image8(path);
+        const ImageF real = read_image_float(path);
+        ASSERT_EQ(wide.channels, 4);
+        for (int i = 0; i < 60; ++i) {
+            const int v = wide_level(i / 4 % 5, i / 20, i % 4);
+            EXPECT_EQ(wide.pixels[i], v);
+            EXPECT_EQ(narrow.pixels[i], std::lround(v * 255.0 / 65535));
+            EXPECT_FLOAT_EQ(real.pixels[i], static_cast<float>(v) / 65535);
+        }
     }
 }
 

@@ -10,6 +10,7 @@
 #include "io/image/exr_header.h"
 #include "io/image/image_codec.h"
 #include "io/image/loaded_module.h"
+#include "io/image/png.h"
 #include "stroke/surface/model.h"
 
 namespace fs = std::filesystem;
@@ -29,6 +30,14 @@ const ImageCodec& codec() {
     return loaded;
 }
 
+ImageFault encode_format(const EncodeRequest& request, std::vector<unsigned char>& out) {
+    return request.format == ImageFormat::png ? encode_png(request, out) : codec().encode(request, out);
+}
+
+ImageFault decode_format(const DecodeRequest& request, DecodedImage& out) {
+    return request.format == ImageFormat::png ? decode_png(request, out) : codec().decode(request, out);
+}
+
 /// Empty: there is no fault.
 Message words_of(const ImageFault& fault) {
     return fault.message.empty() && !fault.library.empty() ? library_fault(fault.library) : fault.message;
@@ -42,7 +51,7 @@ std::vector<unsigned char> encode(ImageFormat format, const PixelView& pixels, c
         throw Error(name, Message("a PNG file has 1 to 4 channels, not {}; write an EXR file", pixels.channels));
     assert(options.channel_names.empty() || options.channel_names.size() == static_cast<std::size_t>(pixels.channels));
     std::vector<unsigned char> bytes;
-    const Message fault = words_of(codec().encode({.format = format, .pixels = pixels, .options = &options}, bytes));
+    const Message fault = words_of(encode_format({.format = format, .pixels = pixels, .options = &options}, bytes));
     if (!fault.empty()) throw Error(name, Message("the picture cannot be written: {}", fault));
     return bytes;
 }
@@ -70,13 +79,13 @@ Image<T> decode(const std::vector<char>& bytes, const fs::path& path, std::size_
     const ImageFormat format = format_of(bytes, path);
     Message fault = format == ImageFormat::exr ? exr_header_fault(bytes, max_pixels) : Message();
     if (fault.empty())
-        fault = words_of(codec().decode({.format = format,
-                                         .bytes = bytes.data(),
-                                         .size = bytes.size(),
-                                         .type = view_of<T>(1, 1, 1, nullptr).type,
-                                         .max_pixels = max_pixels,
-                                         .max_bytes = most_bytes()},
-                                        decoded));
+        fault = words_of(decode_format({.format = format,
+                                        .bytes = bytes.data(),
+                                        .size = bytes.size(),
+                                        .type = view_of<T>(1, 1, 1, nullptr).type,
+                                        .max_pixels = max_pixels,
+                                        .max_bytes = most_bytes()},
+                                       decoded));
     if (!fault.empty()) throw Error(path.string(), Message("the picture cannot be read: {}", fault));
     Image<T> image{.width = decoded.width,
                    .height = decoded.height,

@@ -11,7 +11,7 @@
 
 /// \file
 /// Reading and writing of picture files: PNG with 8 or 16 bits, OpenEXR; JPEG and TIFF are read only. Any thread. The
-/// codec (OpenImageIO, 250 shared objects, 0.25 s) is loaded with the first picture.
+/// codec of all formats but PNG (OpenImageIO, 250 shared objects, 0.25 s) is loaded with the first such picture.
 namespace tuft::io {
 
 /// Picture in memory, row 0 at the top, channels interleaved.

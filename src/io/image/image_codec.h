@@ -7,8 +7,9 @@
 #include "io/image/image.h"
 
 /// \file
-/// Interface between image.cpp and the module `tuft_images`, which links OpenImageIO. image.cpp loads the module with
-/// the first picture and calls it through these function pointers. The functions may run on any thread.
+/// Interface between image.cpp and the codecs: png.h, and the module `tuft_images`, which links OpenImageIO. image.cpp
+/// loads the module with the first picture that is no PNG and calls it through these function pointers. The functions
+/// may run on any thread.
 namespace tuft::io {
 
 /// Format of a picture file.

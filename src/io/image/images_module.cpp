@@ -14,7 +14,7 @@ namespace {
 const char* extension_of(ImageFormat format) {
     switch (format) {
         case ImageFormat::png:
-            return "picture.png";
+            break;  // png.h
         case ImageFormat::exr:
             return "picture.exr";
         case ImageFormat::jpeg:
@@ -46,36 +46,25 @@ ImageFault said(std::string words) {
     return words.empty() ? ours("it is damaged") : ImageFault{.message = {}, .library = std::move(words)};
 }
 
+/// Of an EXR file: no other format is written here.
 ImageFault encode_checked(const EncodeRequest& request, std::vector<unsigned char>& out) {
     const PixelView& px = request.pixels;
-    const bool exr = request.format == ImageFormat::exr;
-    OIIO::TypeDesc stored = type_of(px.type);
-    if (exr) stored = request.options->half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT;
-    if (!exr && px.type == PixelView::Type::f32) stored = OIIO::TypeDesc::UINT16;
-
-    OIIO::ImageSpec spec(px.width, px.height, px.channels, stored);
+    OIIO::ImageSpec spec(px.width, px.height, px.channels,
+                         request.options->half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
     static const std::vector<std::string> names[5] = {{}, {"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
     if (!request.options->channel_names.empty())
         spec.channelnames = request.options->channel_names;
     else if (px.channels <= 4)
         spec.channelnames = names[px.channels];
-    spec.alpha_channel = !exr && px.channels % 2 == 0 ? px.channels - 1 : -1;
+    spec.alpha_channel = -1;
     // Pixels count as premultiplied otherwise, and colour is lost where alpha is 0.
     spec.attribute("oiio:UnassociatedAlpha", 1);
-    if (!exr && request.options->srgb) spec.attribute("oiio:ColorSpace", "sRGB");
-    const std::vector<std::uint8_t>& profile = request.options->icc_profile;
-    if (!exr && !profile.empty())
-        spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size())),
-                       profile.data());
     const std::vector<float>& chromaticities = request.options->chromaticities;
-    if (exr && chromaticities.size() == 8)
+    if (chromaticities.size() == 8)
         spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities.data());
-    if (exr) {
-        spec.attribute("compression", "zip");
-        // Otherwise the time of day goes into the file, and no two are the same.
-        spec.attribute("DateTime", "1970:01:01 00:00:00");
-    } else
-        spec.attribute("png:compressionLevel", request.options->compression);
+    spec.attribute("compression", "zip");
+    // Otherwise the time of day goes into the file, and no two are the same.
+    spec.attribute("DateTime", "1970:01:01 00:00:00");
 
     const char* name = extension_of(request.format);
     OIIO::Filesystem::IOVecOutput memory;
