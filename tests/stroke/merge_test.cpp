@@ -1,4 +1,4 @@
-#include "stroke/document/merge.h"
+#include "stroke/journal/merge.h"
 
 #include <gtest/gtest.h>
 

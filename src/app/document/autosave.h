@@ -9,7 +9,7 @@
 #include "core/message.h"
 #include "io/project/project.h"
 #include "stroke/document/document.h"
-#include "stroke/document/merge.h"
+#include "stroke/journal/merge.h"
 
 /// \file
 /// Continuous saving of the work. Owned by the paint thread; created by `Opening` on its thread.

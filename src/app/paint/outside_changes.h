@@ -4,7 +4,7 @@
 
 #include "app/work/paint_context.h"
 #include "io/project/project.h"
-#include "stroke/document/merge.h"
+#include "stroke/journal/merge.h"
 
 /// \file
 /// Changes of the project by other programs. Paint thread.

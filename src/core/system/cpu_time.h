@@ -1,6 +1,6 @@
 #pragma once
 
-#include <time.h>
+#include <ctime>
 
 /// \file
 /// CPU time, for programs that state what work costs.
