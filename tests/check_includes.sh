@@ -115,7 +115,7 @@ wall() {
 wall 'OpenMesh' 'mesh/*.cpp'
 wall 'CGAL' '*.cpp'
 wall 'embree3' '*.cpp'
-wall 'OpenImageIO|SQLiteCpp|sqlite3|tiny_gltf|zlib|assimp' 'io/*.cpp'
+wall 'OpenImageIO|SQLiteCpp|sqlite3|tiny_gltf|zlib|png\.h|assimp' 'io/*.cpp'
 wall '[A-Za-z0-9_]+\.hxx' 'io/import/import_cad.cpp' 'io/import/cad_faces.*'
 wall 'draco/' 'io/gltf/draco_module.cpp'
 wall 'meshoptimizer' 'io/gltf/*.cpp' 'mesh/repair/*.cpp'

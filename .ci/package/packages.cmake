@@ -50,7 +50,7 @@ and a journal of strokes that can be taken back and painted again.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME tuft-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 string(JOIN ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "tuft ${same_version}" libglm-dev libopenmesh-dev libembree-dev
-  libtbb-dev libfmt-dev libtinygltf-dev libsqlite3-dev libsqlitecpp-dev libzstd-dev zlib1g-dev libxxhash-dev
+  libtbb-dev libfmt-dev libtinygltf-dev libsqlite3-dev libsqlitecpp-dev libzstd-dev libpng-dev zlib1g-dev libxxhash-dev
   libpugixml-dev libfontconfig-dev libfreetype-dev libharfbuzz-dev
   libmeshoptimizer-dev libpodofo-dev libpolyclipping-dev libtomlplusplus-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "cmake, pkg-config")

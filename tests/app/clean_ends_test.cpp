@@ -59,7 +59,8 @@ struct Painted : stroke::Document {
             PointerSettings settings = {})
         : stroke::Document(model), brush_(brush) {
         const brush::Preset preset = brush::load_preset(brush);
-        PointerInput hand(*model.query, preset, settings, {stroke::measure_tip_lag(preset)});
+        stroke::TiltedTipLag tilted(preset);
+        PointerInput hand(*model.query, preset, settings, {stroke::measure_tip_lag(preset, tilted)});
         for (const Aim& aim : aims) take(hand.move(aim));
         Aim last = aims.back();  // the button comes up at the last place, one event later
         last.time += 1 / kRate;

@@ -85,8 +85,8 @@ TEST_P(TiltedCurve, ItsInkIsOnIt) {
     CurveHand hand{.holder = stroke::holder_options(preset, *model.mesh),
                    .pressure = 0.4,
                    .tilt = {GetParam().first, GetParam().second}};
-    hand.holder.tip_lag = stroke::measure_tip_lag(preset);
     stroke::TiltedTipLag tilted(preset);
+    hand.holder.tip_lag = stroke::measure_tip_lag(preset, tilted);
     hand.holder.tip_lag_change = [&tilted](double depth, const Vec2& lean) { return tilted.at(depth, lean); };
     const auto strokes = curve_poses(*model.query, points, hand);
     ASSERT_EQ(strokes.size(), 1u);

@@ -63,7 +63,7 @@ TEST(Presets, AMakeThatLeansSaysSo) {
     EXPECT_EQ(parse_preset(preset_toml(fan), "again.toml").lean, fan.lean);
     EXPECT_EQ(scaled(fan, 0.5).lean, fan.lean);
     EXPECT_EQ(preset_toml(load_preset("flat-12")).find("[hold]"), std::string::npos);
-    EXPECT_THAT(error_of("[hold]\nlean_rad = 1.2\n"), testing::HasSubstr("'hold.lean_rad' is 1.2, outside 0 to 1"));
+    EXPECT_THAT(error_of("[hold]\nlean_rad = 1.2\n"), testing::HasSubstr("'hold.lean_rad' is 1.2, outside 0 to 0.8"));
 }
 
 TEST(Presets, OfAnySizeAProjectHoldsThemToTheBit) {

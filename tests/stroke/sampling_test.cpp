@@ -70,7 +70,8 @@ Wall wall(SurfaceMapping mapping) {
 HolderOptions options_on(const TriangleMesh& mesh) {
     const brush::Preset preset = brush::load_preset("mixed-medium");
     HolderOptions o = holder_options(preset, mesh);
-    o.tip_lag = measure_tip_lag(preset);
+    TiltedTipLag tilted(preset);
+    o.tip_lag = measure_tip_lag(preset, tilted);
     return o;
 }
 
@@ -252,7 +253,7 @@ TEST(Sampling, AHolderIsNoFasterThanItsHandMakesIt) {
                     }
                     trace.samples.back().pressure = press[0] == 'a' ? 0.4 : 0;
                     HolderOptions options = holder_options(preset, flat);
-                    options.tip_lag = measure_tip_lag(preset);
+                    options.tip_lag = measure_tip_lag(preset, tilted);
                     options.tip_lag_change = [&](double depth, const Vec2& lean) { return tilted.at(depth, lean); };
                     expect_bounded(on_flat, trace, options, 0);
                     trace.placement = {{kCylinderRadius, 0, 0.01}, {0, 1, 0}, {0, 0, -1}, SurfaceMapping::drape};

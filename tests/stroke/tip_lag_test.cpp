@@ -132,6 +132,19 @@ TEST(TipLag, AFanThatNobodyLeansDrawsAnEvenBandFromItsStart) {
     EXPECT_EQ(column(-5e-3).second, 0);
 }
 
+TEST(TipLag, AcrossItsBroadSideIsContinuousWhereTheHolderIsUpright) {
+    HolderOptions options;
+    options.across = true;
+    options.lean = 0.4;
+    options.tip_lag = {{0, 0}, {0.01, 0.004}};  // leaning as the make does
+    options.tip_lag_change = [](double, const Vec2& lean) { return Vec2(0.01 * (lean.x - 0.4), 0.01 * lean.y); };
+    const double roll = 0.5 * std::numbers::pi;
+    const Vec2 upright = tip_lag_at(options, 0.5, {0, 0}, roll, {1, 0});
+    for (const Vec2 tilt : {Vec2(1e-9, 0), Vec2(0, -1e-9)})
+        EXPECT_LT(glm::distance(upright, tip_lag_at(options, 0.5, tilt, roll, {1, 0})), 1e-9);
+    EXPECT_NEAR(glm::distance(upright, tip_lag_at(options, 0.5, {0.4, 0}, roll, {1, 0})), 0.004, 1e-9);
+}
+
 TEST(TipLag, ADotOfAFanIsOnePieceWhereItIsSet) {
     constexpr double kPress = 0.3, kCell = 2e-4;
     const brush::Preset fan = brush::load_preset("fan-30");

@@ -6,8 +6,8 @@ namespace tuft::app {
 
 TipLag TipLagCache::find(const brush::Preset& preset) {
     if (std::string content = brush::preset_toml(preset); measured_ != content) {
-        upright_ = stroke::measure_tip_lag(preset);
-        tilted_.emplace(preset);
+        measured_.clear();
+        upright_ = stroke::measure_tip_lag(preset, tilted_.emplace(preset));
         measured_ = std::move(content);
     }
     return {upright_, [this](double depth, const Vec2& lean) { return tilted_->at(depth, lean); }};

@@ -45,7 +45,7 @@ constexpr std::array kFields = {
     Field{"ferrule", "hair_diameter_mm", &Preset::hair_diameter, kMillimetre, 0.01, 2},
     Field{"ferrule", "surface_tension_n_m", &Preset::surface_tension, 1, 0, 1},
     Field{"ferrule", "hair_friction", &Preset::hair_friction, 1, 0, 2},
-    Field{"hold", "lean_rad", &Preset::lean, 1, 0, 1},
+    Field{"hold", "lean_rad", &Preset::lean, 1, 0, 0.8},
     Field{"foam", "modulus_kpa", &Preset::modulus, 1e3, 0, 1000},
     Field{"foam", "solid", &Preset::solid, 1, 0.005, 0.3},
     Field{"foam", "pore_min_mm", &Preset::pore_min, kMillimetre, 0.05, 10},

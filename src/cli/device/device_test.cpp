@@ -111,19 +111,22 @@ int test_device(const DeviceWork& a) {
     Console console(a.common.quiet);
     const Places places = places_of(a);
     nlohmann::json out;
-    if (!a.arm.simulate.empty()) {
-        haptic::device_preset(a.arm.simulate);
-        const LastWords figures;
-        const Trials trials = run_trials(a, places, console);
-        out = to_json(trials);
-        if (!trials.complete) {
-            console.clear();
-            print(out, a.common.json);
-            throw Cancelled();
+    const LastWords figures;
+    haptic::LoopStatus loop;
+    try {
+        if (!a.arm.simulate.empty()) {
+            haptic::device_preset(a.arm.simulate);
+            const Trials trials = run_trials(a, places, console);
+            out = to_json(trials);
+            if (!trials.complete) throw Cancelled();
+            out["stop_ms"] = slowest_stop(a, places);
         }
-        out["stop_ms"] = slowest_stop(a, places);
+        loop = run_loop(a, places);
+    } catch (const Cancelled&) {  // what there is, is printed
+        console.clear();
+        if (!out.empty()) print(out, a.common.json);
+        throw;
     }
-    const haptic::LoopStatus loop = run_loop(a, places);
     console.clear();
     out["late_percent"] = percent(loop.cycle.late, loop.cycle.count);
     out["worst_cycle_ms"] = 1e3 * loop.cycle.worst;

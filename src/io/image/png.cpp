@@ -101,8 +101,7 @@ bool update_info(PngWork& work) {
 
 bool read_pixels(PngWork& work, unsigned char** rows) {
     if (setjmp(png_jmpbuf(work.png))) return false;
-    png_read_image(work.png, rows);
-    png_read_end(work.png, nullptr);
+    png_read_image(work.png, rows);  // nothing after the pixels is used: it may be missing
     return true;
 }
 

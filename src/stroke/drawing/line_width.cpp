@@ -63,11 +63,10 @@ const HolderOptions& WidthTables::holder(const std::string& brush) {
     const auto at = holds_.find(brush);
     if (at != holds_.end()) return at->second;
     HolderOptions options = holder_options(preset(brush));
-    options.tip_lag = measure_tip_lag(preset(brush));
-    // A hand that sets down pressed leans ahead.
-    options.tip_lag_change = [tilted = std::make_shared<TiltedTipLag>(preset(brush))](double depth, const Vec2& lean) {
-        return tilted->at(depth, lean);
-    };
+    // A hand that sets down pressed leans ahead. Copies of the options may outlive the tables.
+    const auto tilted = std::make_shared<TiltedTipLag>(preset(brush));
+    options.tip_lag = measure_tip_lag(preset(brush), *tilted);
+    options.tip_lag_change = [tilted](double depth, const Vec2& lean) { return tilted->at(depth, lean); };
     return holds_.emplace(brush, std::move(options)).first->second;
 }
 

@@ -57,8 +57,9 @@ HolderOptions Materials::holder(const std::string& name, const mesh::TriangleMes
     HolderOptions options = holder_options(brush.preset, mesh);
     if (!compensate_tip_lag) return options;
     if (!brush.tilted_tip_lag) {
-        brush.tip_lag = measure_tip_lag(brush.preset);
-        brush.tilted_tip_lag = std::make_unique<TiltedTipLag>(brush.preset);
+        auto tilted = std::make_unique<TiltedTipLag>(brush.preset);
+        brush.tip_lag = measure_tip_lag(brush.preset, *tilted);
+        brush.tilted_tip_lag = std::move(tilted);
     }
     options.tip_lag = brush.tip_lag;
     options.tip_lag_change = [tilted = brush.tilted_tip_lag.get()](double depth, const Vec2& lean) {

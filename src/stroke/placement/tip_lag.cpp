@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "brush/calibration/sweep.h"
 #include "core/ease.h"
+#include "core/system/parallel.h"
 #include "stroke/gesture/tractrix.h"
 
 namespace tuft::stroke {
@@ -35,11 +37,15 @@ const std::vector<Vec2>& TiltedTipLag::node(std::size_t i, std::size_t j) {
     const std::lock_guard lock(mutex_);
     std::vector<Vec2>& tip_lags = nodes_[i * kAcross.size() + j];
     if (tip_lags.empty()) {
-        for (const double part : kDepths) {
-            const brush::LinePlace place = brush::line_place(preset_, part * working_depth(preset_),
-                                                             {kAlong[i], kAcross[j]}, measured_roll(preset_));
-            tip_lags.push_back({place.behind, -place.aside});
-        }
+        std::vector<Vec2> measured(kDepths.size());
+        parallel_for(measured.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                const brush::LinePlace place = brush::line_place(preset_, kDepths[k] * working_depth(preset_),
+                                                                 {kAlong[i], kAcross[j]}, measured_roll(preset_));
+                measured[k] = {place.behind, -place.aside};
+            }
+        });
+        tip_lags = std::move(measured);
     }
     return tip_lags;
 }
@@ -83,8 +89,8 @@ std::vector<TipLag> TiltedTipLag::as_held() {
     return tip_lag;
 }
 
-std::vector<TipLag> measure_tip_lag(const brush::Preset& preset) {
-    if (bends_across(preset)) return TiltedTipLag(preset).as_held();
+std::vector<TipLag> measure_tip_lag(const brush::Preset& preset, TiltedTipLag& tilted) {
+    if (bends_across(preset)) return tilted.as_held();
     std::vector<double> depths;
     for (const double part : {0.05, 0.15, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0})
         depths.push_back(part * working_depth(preset));
@@ -114,9 +120,10 @@ double depth_of(const HolderOptions& options, double pressure) {
 /// What a lean adds to the tip_lag, `along` the path; that is 1 long where the string is taut.
 Vec2 tilted_tip_lag(const HolderOptions& options, const Vec2& tilt, double depth, const Vec2& along) {
     const double taut = glm::length(along), lean = glm::length(tilt);
-    if (taut < 1e-9 || lean <= 0) return Vec2{0};
+    // Across the broad side the lag without a change is that of a holder that leans as its make does.
+    if (taut < 1e-9 || (lean <= 0 && !options.across)) return Vec2{0};
     const Vec2 ahead = along / taut, left{ahead.y, -ahead.x};  // y of a trace is down
-    const Vec2 held = tilt * (std::min(lean, options.max_tilt) / lean);
+    const Vec2 held = lean > 0 ? tilt * (std::min(lean, options.max_tilt) / lean) : Vec2{0};
     const Vec2 up{std::tan(held.x), std::tan(held.y)};
     const Vec2 more = options.tip_lag_change(depth, {std::atan(glm::dot(up, ahead)), std::atan(glm::dot(up, left))});
     return taut * (more.x * ahead + more.y * left);

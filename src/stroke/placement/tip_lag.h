@@ -18,15 +18,10 @@
 /// compensated in the hand's samples. Called by `Materials` and `hand_path`.
 namespace tuft::stroke {
 
-/// Measures the tip lag of a brush at depths up to its working depth: the distance from the foot of the holder's axis
-/// back to the widest place of the steady contact patch, which lies half a line's width behind its end
-/// (`brush::sweep_depth`). Of a brush that `bends_across` it is that of a holder that leans as its make does, with the
-/// broad side across the path (`TiltedTipLag::as_held`). Cost: about 50 ms; of a fan 1.5 s.
-std::vector<TipLag> measure_tip_lag(const brush::Preset& preset);
-
 /// Change of a brush's tip lag by a lean of the holder, measured on steady strokes at a grid of leans and depths. A
-/// node of the grid is measured at its first use (25 ms). Leans up to 0.05 rad change nothing, as a hand does not hold
-/// a brush more upright; from 0.15 rad on the change is full. Thread-safe.
+/// node of the grid is measured at its first use: 25 ms, of a fan 1.5 s of computing, its depths side by side. Leans up
+/// to 0.05 rad change nothing, as a hand does not hold a brush more upright; from 0.15 rad on the change is full. Of a
+/// brush that `bends_across` every lean counts, from that of its make. Thread-safe.
 class TiltedTipLag {
   public:
     explicit TiltedTipLag(brush::Preset preset) : preset_(std::move(preset)) {}
@@ -52,6 +47,13 @@ class TiltedTipLag {
     std::mutex mutex_;  // of `nodes_` while one is measured; measured ones do not change
     std::array<std::vector<Vec2>, kAlong.size() * kAcross.size()> nodes_;  // ahead and left by depth
 };
+
+/// Measures the tip lag of a brush at depths up to its working depth: the distance from the foot of the holder's axis
+/// back to the widest place of the steady contact patch, which lies half a line's width behind its end
+/// (`brush::sweep_depth`). Of a brush that `bends_across` it is that of a holder that leans as its make does, with the
+/// broad side across the path (`TiltedTipLag::as_held` of `tilted`, which is of the same preset). Cost: about 50 ms; of
+/// a fan 1.5 s.
+std::vector<TipLag> measure_tip_lag(const brush::Preset& preset, TiltedTipLag& tilted);
 
 /// Returns the tip lag at one point of a path, metres to the right and down. `tilt` and `roll`: radians, as in
 /// `SurfaceSample`; `ahead`: direction of the path in the same axes, up to 1 long. With `options.across` it is the tip
@@ -84,9 +86,9 @@ inline constexpr double kHoverTime = 0.05;  ///< seconds of the tip between the 
 /// from the first touch in the initial direction of the trace; of a dot, with `options.across`, in that of the lean.
 /// Where the path reverses, the tip lag passes through zero. A trace that begins pressed gets samples before its first
 /// one, at the same place and earlier in time, whose pressure rises to the first; the holder moves at `kSetDownPace`
-/// times the trace's speed, so that the tip touches first and trails. It leans ahead by 0.12 rad meanwhile where its
-/// make does not lean by more, and so does that of a blade at any landing, over `blade_landing`. A holder upright to
-/// 0.05 rad sets the brush down plumb and reaches its lean within 0.3 lengths of the tuft.
+/// times the trace's speed, so that the tip touches first and trails. It leans ahead by 0.12 rad meanwhile where a make
+/// that leans does not already tilt it ahead by more, and so does that of a blade at any landing, over `blade_landing`.
+/// A holder upright to 0.05 rad sets the brush down plumb and reaches its lean within 0.3 lengths of the tuft.
 ///
 /// The hand's speed bounds the holder's. Over a surface of curvature κ, while the tuft is pressed,
 ///
