@@ -164,6 +164,10 @@ TEST(Writing, OfSeveralColoursComesInThemAndOfOneInTheChosenInk) {
     EXPECT_NE(place_words(w, at).find("--areas mask"), std::string::npos);
     w.own_ink = false;
     EXPECT_NE(place_words(w, at).find("--areas brush"), std::string::npos);
+    const std::string capitals = testing::TempDir() + "/FLAG.SVG";
+    std::filesystem::copy_file(file, capitals, std::filesystem::copy_options::overwrite_existing);
+    EXPECT_TRUE(read_writing(capitals).in_colours());
+    std::filesystem::remove(capitals);
     std::ofstream(file) << "<svg xmlns='http://www.w3.org/2000/svg' width='60mm' viewBox='0 0 60 30'><path "
                            "fill='#bd3b25' d='M0 0 H20 V30 H0 Z'/></svg>";
     w = read_writing(file);

@@ -114,9 +114,9 @@ TEST(BrushHand, AHeadIsSetDownAcrossThePathAndIsRounderForIt) {
     for (std::size_t i = 1; i < trace.samples.size(); ++i) EXPECT_GT(trace.samples[i].time, trace.samples[i - 1].time);
     for (std::size_t i = 0; i < plain.samples.size(); ++i)
         EXPECT_EQ(trace.samples[touch + i].position, plain.samples[i].position);
-    // A disc of radius r is 2 √(6 r − 9) wide 3 units inside its edge: 5 for the tip's 2.5 units, 7.5 for 3.8. Half the
-    // difference is asked for.
-    EXPECT_GT(width_of_head(hand, pace, 3), 1.25 * width_of_head(hand, {.across = 0}, 3));
+    // One unit inside its edge: a disc of radius r is 2 √(2 r − 1) wide there, 5 for 3.6 units, 8 for 8.5. Half the
+    // difference is asked for. Three units inside, either head is as wide as its line.
+    EXPECT_GT(width_of_head(hand, pace, 1), 1.3 * width_of_head(hand, {.across = 0}, 1));
 }
 
 // A brush that does not fit is answered with a size that does, and the style's own fits at any size of characters.

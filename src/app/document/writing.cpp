@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "core/error.h"
@@ -43,7 +45,9 @@ bool belongs_to_brush(const stroke::Preparation& preparation) {
 }
 
 bool is_svg(const std::filesystem::path& file) {
-    return file.extension() == ".svg";
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    return extension == ".svg";
 }
 
 std::vector<stroke::FlatArea*> areas_of(std::vector<stroke::RecordedStroke>& traces) {
@@ -101,10 +105,16 @@ std::size_t count_inks(Writing& w) {
 
 Writing read_writing(const std::filesystem::path& file) {
     Writing out{.file = file};
-    if (is_svg(file)) out.areas = area_form(file);
+    std::optional<Error> fault;  // of the areas: the file may have lines nevertheless
+    try {
+        if (is_svg(file)) out.areas = area_form(file);
+    } catch (const Error& e) {
+        fault = e;
+    }
     try {
         out.lines = line_form(file);
     } catch (const Error&) {
+        if (fault) throw *fault;
         if (out.areas.traces.empty()) throw;  // a picture has no lines
     }
     if (!out.lines.traces.empty() && out.lines.traces.front().placed)

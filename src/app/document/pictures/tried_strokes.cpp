@@ -1,5 +1,6 @@
 #include "app/document/pictures/tried_strokes.h"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 
@@ -25,10 +26,15 @@ unsigned TriedStrokes::texture(const std::string& brush, std::uint64_t reading) 
         app::release(p.texture);
         p.picture.rgb.clear();
         p.reading = reading;
-        wanted_.push_back({.brush = brush, .reading = reading});
+        want({.brush = brush, .reading = reading});
     }
     if (!p.texture && !p.picture.rgb.empty()) upload(p.texture, p.picture);
     return p.texture;
+}
+
+// Before those that are known to be missing in the cache.
+void TriedStrokes::want(Wish wish) {
+    wanted_.insert(std::ranges::find_if(wanted_, &Wish::to_paint), std::move(wish));
 }
 
 void TriedStrokes::update(bool may_paint) {
@@ -39,14 +45,13 @@ void TriedStrokes::update(bool may_paint) {
         if (painting_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
         Painted painted = painting_.get();
         if (painted.stopped)
-            wanted_.push_front(std::move(painted.wish));
+            want(std::move(painted.wish));
         else if (painted.missing)
             wanted_.push_back({std::move(painted.wish.brush), painted.wish.reading, true});
         else if (Picture& p = pictures_[painted.wish.brush]; p.reading == painted.wish.reading)
             p.picture.rgb = std::move(painted.rgb);
     }
     std::erase_if(wanted_, [&](const Wish& wish) { return pictures_[wish.brush].reading != wish.reading; });
-    // Those that are not known to be missing in the cache come first.
     if (!may_paint || wanted_.empty() || (wanted_.front().to_paint && now - busy_at_ < kRest)) return;
     stop_ = false;
     painting_ = std::async(std::launch::async, [this, wish = wanted_.front()] { return paint(wish); });

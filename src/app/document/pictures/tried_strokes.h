@@ -56,6 +56,7 @@ class TriedStrokes {
         bool missing = false;  ///< from the cache; it is painted later
     };
     Painted paint(Wish wish) const;
+    void want(Wish wish);
 
     DiskCache cache_;
     std::map<std::string, Picture> pictures_;  ///< of all that were asked for
