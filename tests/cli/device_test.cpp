@@ -58,9 +58,10 @@ std::string stopped_at_work(const std::string& stop) {
 
 TEST_F(Device, AnInterruptedTestPrintsWhatItHas) {
     const std::string test = "device test --simulate touch --model sheet --threads 1 --json --quiet --hands 100000";
-    const test::Ran ran = tuft(test + " >" + path("figures") + " & " + stopped_at_work("kill -INT $p"));
+    const test::Ran ran =
+        tuft(test + " >" + path("figures") + " 2>" + path("said") + " & " + stopped_at_work("kill -INT $p"));
     EXPECT_EQ(ran.status, 1);
-    EXPECT_EQ(ran.err, "tuft: stopped\n");
+    EXPECT_EQ(read(path("said")), "tuft: stopped\n");
     const nlohmann::json out = nlohmann::json::parse(read(path("figures")));
     EXPECT_FALSE(out["complete"]);
     EXPECT_LT(out["trials"], 18 + 100'000);  // two places, nine motions
