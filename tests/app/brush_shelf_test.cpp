@@ -118,7 +118,7 @@ TEST_F(OwnBrush, OfADiskThatDoesNotAnswerIsNotWaitedForAtTheEnd) {
     auto shelf = std::make_unique<BrushShelf>();
     shelf->at(file_);
     write(0.03);
-    const auto before = signal(SIGIO, SIG_IGN);  // which tells the holder that somebody waits
+    const auto before = signal(SIGIO, SIG_IGN);  // by which the system informs the holder of it
     const int file = ::open(file_.c_str(), O_RDWR);
     ASSERT_GE(file, 0);
     if (::fcntl(file, F_SETLEASE, F_WRLCK) != 0) {
