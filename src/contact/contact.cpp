@@ -94,7 +94,7 @@ ContactPlane refresh_plane(const ContactPlane& old, const NodeContact& now, cons
     constexpr double kCorner = 0.87;  // cos 30°
     if (glm::dot(old.normal, fresh.normal) > kCorner || z_old > 1.5 * radius) return fresh;
     const Vec3 sum = old.normal + fresh.normal;
-    if (glm::dot(sum, sum) < 0.1) return fresh;
+    if (glm::dot(sum, sum) < 1.4) return fresh;  // the walls of a groove
     const Vec3 n = glm::normalize(sum);
     // Through the point where p would be in front of both.
     const double needed = std::max(-z_old, -now.height) / glm::dot(n, fresh.normal);
@@ -135,6 +135,24 @@ Recycled<ContactPlane> find_side_walls(const Step& w, const brush::Tuft& tuft, s
     }
     return walls;
 }
+
+bool any_in_groove(std::span<const NodeWalls> walls) {
+    return std::any_of(walls.begin(), walls.end(), [](const NodeWalls& n) { return n.in_groove(); });
+}
+
+/// Planes and walls as `brush::step` takes them.
+struct StepPlanes {
+    Recycled<ContactPlane> planes, walls;
+
+    StepPlanes(std::span<const NodeWalls> nodes, std::size_t in_spines, const Recycled<ContactPlane>& beside)
+        : walls(beside) {
+        for (const NodeWalls& n : nodes) planes.push_back(n.own.wedge);
+        if (!any_in_groove(nodes)) return;
+        const ContactPlane none{.normal = Vec3{0}};
+        if (walls.empty()) walls.assign(2 * in_spines, none);
+        for (const NodeWalls& n : nodes.first(in_spines)) walls.push_back(n.in_groove() ? n.across.wedge : none);
+    }
+};
 
 constexpr double kStill = 0.1;        // of the error that planes may have: nodes that move less are at rest
 constexpr int kMostRestSearches = 3;  // between two faces the planes of one rest lead to the other, and back
@@ -187,8 +205,9 @@ Bent solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memory) {
     Bent out;
     auto& [state, planes, now, contacts] = out;
     Recycled<NodeContact> predicted = find_tuft_contacts(w, tuft, nodes, {.contacts = memory.contacts});
-    for (const NodeContact& c : predicted) planes.push_back(c.wedge);
-    const Recycled<ContactPlane> walls = find_side_walls(w, tuft, predicted);
+    const Recycled<ContactPlane> beside = find_side_walls(w, tuft, predicted);
+    Recycled<NodeWalls> walls = find_chain_walls(w.surface, nodes, predicted, radii, memory.walls, w.search);
+    StepPlanes met(walls, radii.size(), beside);
     rest.nodes.clear();
     rest.searches = still ? rest.searches + 1 : 1;
     rest.verified = false;
@@ -197,22 +216,23 @@ Bent solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memory) {
     thread_local brush::StepStart start;
     before = tuft;
     start.known = start.in_parts = false;
-    state = brush::step(tuft, w.pose, planes, dt, walls, &start);
+    state = brush::step(tuft, w.pose, met.planes, dt, met.walls, &start);
     now = brush::predicted_nodes(tuft, w.pose);
     for (int pass = 0; pass < w.options.max_refreshes && state.touching; ++pass) {
         if (tuft.split != was_split && now.size() < nodes.size()) break;
         const auto compared = std::span(now).first(nodes.size());
         const Recycled<NodeContact> found =
             find_tuft_contacts(w, before, compared, {predicted, nodes, 0.5 * w.options.refresh_error});
+        const auto radius_of = [&](std::size_t i) { return i < radii.size() ? radii[i] : root_radius; };
         double worst = 0;
-        Recycled<ContactPlane> fresh = planes;
-        for (std::size_t i = 0; i < planes.size(); ++i) {
-            const double radius = i < radii.size() ? radii[i] : root_radius;
-            const double z = brush::height_over(planes[i], compared[i]);
+        Recycled<std::size_t> near;
+        near.reserve(walls.size());
+        for (std::size_t i = walls.size(); i-- > 0;) {
+            const double z = walls[i].height(compared[i]);
             const double height = brush::height_over(found[i].wedge, compared[i]);
-            if (std::min(z, height) > 2 * radius) continue;
+            if (std::min(z, height) > 2 * radius_of(i)) continue;
             worst = std::max(worst, std::abs(z - height));
-            fresh[i] = refresh_plane(planes[i], found[i], compared[i], radius);
+            near.push_back(i);
         }
         if (worst < w.options.refresh_error) {
             contacts = found;
@@ -220,12 +240,22 @@ Bent solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memory) {
             rest.verified = true;
             break;
         }
-        std::swap(planes, fresh);  // `fresh` now holds those of the solve before
+        Recycled<NodeWalls> walls_before = walls;
+        for (const std::size_t i : near) {  // from the root, which the walls of the next ones agree with
+            const NodeWalls* inboard = i + 1 < radii.size() ? &walls[i + 1] : nullptr;
+            const NodeWalls& old = walls_before[i];
+            walls[i] = i < radii.size() ? update_walls(old, found[i], compared[i], radii[i], inboard)
+                                        : NodeWalls{found[i], {}};
+            if (!walls[i].in_groove())
+                walls[i].own.wedge = refresh_plane(old.own.wedge, found[i], compared[i], radius_of(i));
+        }
+        StepPlanes met_before = std::move(met);
+        met = StepPlanes(walls, radii.size(), beside);
         Recycled<Vec3> nodes_before = std::move(now);
         std::swap(static_cast<brush::TuftBend&>(tuft), solved);
         static_cast<brush::TuftBend&>(tuft) = before;
         brush::TuftState former = std::move(state);
-        state = brush::step(tuft, w.pose, planes, dt, walls, &start);
+        state = brush::step(tuft, w.pose, met.planes, dt, met.walls, &start);
         now = brush::predicted_nodes(tuft, w.pose);
         state.iterations += former.iterations;
         state.work += former.work;
@@ -234,7 +264,8 @@ Bent solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memory) {
         if (!state.converged && former.converged) {
             former.iterations = state.iterations;
             former.work = state.work;
-            planes = std::move(fresh);
+            walls = std::move(walls_before);
+            met = std::move(met_before);
             now = std::move(nodes_before);
             std::swap(static_cast<brush::TuftBend&>(tuft), solved);
             state = std::move(former);
@@ -242,10 +273,13 @@ Bent solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memory) {
         }
     }
     if (state.converged) {
-        rest.planes = planes;
-        rest.walls = walls;
+        rest.planes = met.planes;
+        rest.walls = met.walls;
         rest.nodes = now;
     }
+    planes = std::move(met.planes);
+    memory.walls.clear();
+    if (any_in_groove(walls)) memory.walls.assign(walls.begin(), walls.begin() + static_cast<long>(radii.size()));
     if (contacts.empty()) predicted.resize(radii.size());
     memory.contacts = contacts.empty() ? std::move(predicted) : contacts;
     return out;
@@ -521,6 +555,7 @@ Result take_step(brush::Tuft& tuft, const mesh::SurfaceQuery& surface, Memory& m
         memory.touching = false;
         memory.rest = {};
         memory.contacts.clear();
+        memory.walls.clear();
     } else {
         step_on_surface(tuft, w, input.dt, memory, result);
         memory.touching = result.tuft.touching;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "brush/tuft/tuft.h"
+#include "contact/groove.h"
 #include "contact/near_vertices.h"
 #include "contact/node_contact.h"
 #include "core/system/recycled.h"
@@ -49,6 +50,7 @@ struct Memory {
     Recycled<Vec3> centres;  ///< of all sections at the last sample, metres
     /// Of the spines' nodes at the last sample, or none: the next search begins there.
     Recycled<NodeContact> contacts;
+    Recycled<NodeWalls> walls;  ///< of the spines' nodes at the last sample, where one lies in a groove, or none
     Rest rest;
     SmoothTriangles smooth;  ///< of the surface
 };

@@ -63,9 +63,10 @@ struct Scene {
     Memory memory;
     Law law;
     Recycled<Obstacle> plane;
+    Recycled<Wall> walls;
 };
 
-enum class Under { plane, edge, corner, rim };
+enum class Under { plane, edge, corner, rim, walled };
 
 Scene rough_scene(bool hard, Under under = Under::plane) {
     Scene s;
@@ -99,7 +100,7 @@ Scene rough_scene(bool hard, Under under = Under::plane) {
         Obstacle other = o;
         other.normal = glm::normalize(Vec3{0.1, under == Under::edge ? -0.6 : 0.6, 1});
         other.origin = {0.05, 0.1, 0.01};
-        if (under != Under::rim) std::fill(s.plane.begin() + 6, s.plane.end(), other);
+        if (under == Under::edge || under == Under::corner) std::fill(s.plane.begin() + 6, s.plane.end(), other);
     }
     if (under == Under::rim) {
         // A rim of 90° under the outer half, which its nodes know from both faces.
@@ -117,6 +118,14 @@ Scene rough_scene(bool hard, Under under = Under::plane) {
     for (int i = 0; i < 30; ++i) {
         clamp.position += Vec3{0.01 * std::sin(0.4 * i), 0.012, -0.008};
         solve(s.rod, s.memory, clamp, {.obstacles = s.plane, .law = s.law});
+    }
+    if (under == Under::walled) {
+        // Beside the outer nodes, one of them an edge.
+        for (const int i : {6, 8}) {
+            const Vec3 n = glm::normalize(Vec3{-1, 0.3, 0.4}), beyond = glm::normalize(Vec3{0.2, 1, 0.3});
+            const Vec3 at = s.memory.node[i] - 0.5 * s.plane[i].radius * glm::normalize(n + beyond);
+            s.walls.push_back({i, at, n, s.plane[i].radius, 0.7, at, i == 6 ? beyond : Vec3{0}});
+        }
     }
     return s;
 }
@@ -154,25 +163,24 @@ TEST(RodLaws, WhichFaceOfAnEdgeANodeCallsItsOwnDoesNotMatter) {
 }
 
 TEST(RodLaws, GradientMatchesFiniteDifferences) {
-    const std::pair<bool, Under> scenes[] = {
-        {false, Under::plane}, {true, Under::plane}, {false, Under::edge}, {false, Under::corner}, {false, Under::rim}};
+    const std::pair<bool, Under> scenes[] = {{false, Under::plane},  {true, Under::plane}, {false, Under::edge},
+                                             {false, Under::corner}, {false, Under::rim},  {false, Under::walled}};
     for (const auto& [hard, under] : scenes) {
         const Scene s = rough_scene(hard, under);
         ASSERT_TRUE(under == Under::corner || under == Under::rim || s.memory.joint[2].yielded);
         const Load load{{0.01, -0.02, 0.03}, 0, {}};
         const std::size_t size = 16;
         Recycled<double> x(size, 0.0);
-        const Probe at = probe_energy(s.rod, s.memory, {.obstacles = s.plane, .law = s.law, .load = load}, x);
+        const SolveInput input{.obstacles = s.plane, .law = s.law, .load = load, .walls = s.walls};
+        const Probe at = probe_energy(s.rod, s.memory, input, x);
         double largest = 0;
         for (const double g : at.gradient) largest = std::max(largest, std::abs(g));
         for (std::size_t i = 0; i < size; ++i) {
             constexpr double h = 1e-6;
             x[i] = h;
-            const double up =
-                probe_energy(s.rod, s.memory, {.obstacles = s.plane, .law = s.law, .load = load}, x).value;
+            const double up = probe_energy(s.rod, s.memory, input, x).value;
             x[i] = -h;
-            const double down =
-                probe_energy(s.rod, s.memory, {.obstacles = s.plane, .law = s.law, .load = load}, x).value;
+            const double down = probe_energy(s.rod, s.memory, input, x).value;
             x[i] = 0;
             // Central difference: h² times third derivatives, h times kinks of the second, round-off 1e-16/h.
             EXPECT_NEAR((up - down) / (2 * h), at.gradient[i], 1e-6 * (1 + largest))

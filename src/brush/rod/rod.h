@@ -81,12 +81,14 @@ struct Obstacle {
 };
 
 /// A second, one-sided contact plane of a node, with `share` of the law's stiffness. It acts when the node is
-/// closer than `radius`.
+/// closer than `radius`. Near a convex edge `beyond` is the plane of the second face.
 struct Wall {
     int node = 0;
     Vec3 origin{0}, normal{0, 0, 1};
     double radius = 0;
     double share = 0;  ///< 0: nothing
+    Vec3 beyond_origin{0};
+    Vec3 beyond_normal{0};  ///< zero: no edge near
 };
 
 /// Contact law of all nodes, in units of L and B0.

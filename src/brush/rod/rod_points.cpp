@@ -212,6 +212,20 @@ struct PointBuilder {
         }
     }
 
+    /// The edge of a wall whose point is the last one, which is a piece of its own.
+    void add_edge(const Wall& w) {
+        const std::size_t p = fine.size() - 1;
+        const Obstacle near =
+            within_reach({w.origin, w.normal, w.radius, w.beyond_origin, w.beyond_normal}, frozen.stencil[p].at(node));
+        std::tie(fine[p].origin, fine[p].normal) = std::tie(near.origin, near.normal);
+        if (!near.at_edge()) return;
+        frozen.crease[p] = {
+            1, true, round_edge({{near.origin, near.beyond_origin}, {near.normal, near.beyond_normal}}, law.edge)};
+        frozen.piece.resize(fine.size());
+        frozen.piece[p] = {};
+        frozen.piece[p][0] = {frozen.stencil[p], frozen.weight[p], w.radius, 0};
+    }
+
     /// Points of their own on the nodes.
     void add_walls(std::span<const Wall> walls) {
         if (fine.empty() || law.hard) return;
@@ -224,6 +238,7 @@ struct PointBuilder {
             frozen.weight.push_back(w.share * rod.weight[w.node]);
             constexpr double kNowhere = -1e6;  // lengths
             fine.push_back({w.origin, w.normal, w.share > 0 ? w.radius : kNowhere});
+            if (w.share > 0 && law.edge > 0) add_edge(w);
         }
     }
 };

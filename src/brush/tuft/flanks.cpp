@@ -40,4 +40,16 @@ Recycled<rod::Wall> flank_walls(const Preset& p, const Spine& spine, const Quat&
     return out;
 }
 
+void add_walls_across(std::span<const rod::Obstacle> across, Recycled<rod::Wall>& walls) {
+    walls.resize(2 * across.size());
+    for (std::size_t i = 0; i < across.size(); ++i) {
+        const rod::Obstacle& o = across[i];
+        const double share = i > 0 && o.normal != Vec3{0} ? 1 : 0;
+        // Its flanks lie on the two walls that the node itself rests on.
+        if (share > 0)
+            for (const std::size_t side : {0, 1}) walls[2 * (across.size() - 1 - i) + side].share = 0;
+        walls.push_back({static_cast<int>(i), o.origin, o.normal, o.radius, share, o.beyond_origin, o.beyond_normal});
+    }
+}
+
 }  // namespace tuft::brush

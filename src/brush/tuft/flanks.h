@@ -22,4 +22,8 @@ namespace tuft::brush {
 Recycled<rod::Wall> flank_walls(const Preset& preset, const Spine& spine, const Quat& turn,
                                 std::span<const ContactPlane> walls, double wetness);
 
+/// Adds to the walls of a spine those across from its nodes, one for each after two for each. `across`: of the nodes,
+/// root first, in units of L; a normal of zero means none.
+void add_walls_across(std::span<const rod::Obstacle> across, Recycled<rod::Wall>& walls);
+
 }  // namespace tuft::brush

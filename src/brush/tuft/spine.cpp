@@ -111,6 +111,13 @@ Recycled<rod::Obstacle> obstacles_of(const Preset& p, const Spine& spine, std::s
     return out;
 }
 
+/// Walls beside a spine and across from it where its ferrule is turned by `rotation`.
+Recycled<rod::Wall> walls_of(const SpineStep& step, const Spine& spine, const Quat& rotation) {
+    Recycled<rod::Wall> out = flank_walls(step.preset, spine, rotation, step.walls, step.wetness);
+    if (!step.across.empty()) add_walls_across(obstacles_of(step.preset, spine, step.across), out);
+    return out;
+}
+
 }  // namespace
 
 rod::Clamp clamp_of(const Preset& p, const Pose& pose) {
@@ -150,11 +157,9 @@ Solved solve_spine(const SpineStep& step, Spine& spine, const Passed& passed, co
     const Preset& p = step.preset;
     const rod::Law law = law_of(p, step.wetness, step.share, step.dt);
     const Recycled<rod::Obstacle> obstacles = obstacles_of(p, spine, step.planes);
-    rod::Result result = rod::solve(spine.rod, spine.memory, step.clamp,
-                                    {.obstacles = obstacles,
-                                     .law = law,
-                                     .walls = flank_walls(p, spine, step.rotation, step.walls, step.wetness),
-                                     .guess = guess});
+    rod::Result result =
+        rod::solve(spine.rod, spine.memory, step.clamp,
+                   {.obstacles = obstacles, .law = law, .walls = walls_of(step, spine, step.rotation), .guess = guess});
     spine.pressed = result.contact_energy;
     result.dissipation += passed.dissipation;
     result.work += passed.work;
@@ -209,7 +214,7 @@ Pose follow_parts(const SpineStep& step, Spine& spine, const Pose& from, const P
         const rod::Result r = rod::solve(spine.rod, spine.memory, clamp_of(p, pose),
                                          {.obstacles = obstacles_of(p, spine, step.planes),
                                           .law = law,
-                                          .walls = flank_walls(p, spine, pose.rotation, step.walls, step.wetness)});
+                                          .walls = walls_of(step, spine, pose.rotation)});
         spine.pressed = r.contact_energy;
         passed.dissipation += r.dissipation;
         passed.work += r.work;

@@ -59,6 +59,7 @@ struct SpineStep {
     Quat rotation{1, 0, 0, 0};             ///< of the ferrule
     std::span<const ContactPlane> planes;  ///< of its nodes, tip first; or one for all; or none
     std::span<const ContactPlane> walls;   ///< beside its side nodes, tip first, two to a node; or none
+    std::span<const ContactPlane> across;  ///< facing the planes of its nodes, tip first; or none
     double wetness = 1;                    ///< 0 dry … 1 wet
     double share = 1;                      ///< number of equal spines that share the hair
     double dt = 0;                         ///< s

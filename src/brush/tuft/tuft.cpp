@@ -173,7 +173,10 @@ TuftState bend_trunk(Tuft& tuft, const Pose& pose, std::span<const ContactPlane>
                    .wetness = tuft.wetness,
                    .dt = dt};
     // The table knows no walls.
-    if (p.spine != SpineMethod::table) step.walls = walls;
+    if (p.spine != SpineMethod::table && !walls.empty()) {
+        step.walls = walls.first(2 * own);
+        step.across = walls.subspan(2 * own);
+    }
     Passed passed;
     if (p.spine == SpineMethod::rod) passed = follow_ferrule(step, tuft.trunk(), tuft.pose, pose, start);
     Solved solved =
@@ -233,7 +236,7 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
     }
     std::size_t sides = 0;
     for (const Spine& spine : tuft.spines) sides += 2 * spine.rest_radius.size();
-    if (!walls.empty() && walls.size() != sides) {
+    if (!walls.empty() && walls.size() != sides && walls.size() != sides + sides / 2) {
         throw Error(Message("brush: {} walls for {} side nodes", walls.size(), sides));
     }
     if (!std::isfinite(glm::dot(pose.position, pose.position)) || std::abs(glm::length(pose.rotation) - 1) > 1e-3) {

@@ -128,9 +128,10 @@ Recycled<Vec3> predicted_sides(const Tuft& tuft, const Pose& pose);
 
 /// Moves the ferrule to `pose` and bends the tuft against `planes`: one for each node of `predicted_nodes` in that
 /// order, or one for all, or none (free in air). `walls` are planes beside the spines, one for each of
-/// `predicted_sides`, or none; they limit the side nodes and push the spine. `dt` is in seconds since the last
-/// step. The result is finite and the time is bounded; `converged` is false when the solver stopped early. Throws
-/// `Error` when the number of planes or walls fits none of these cases, or when the pose is not finite or its
+/// `predicted_sides`, or none; they limit the side nodes and push the spine. One for each node of the spines may
+/// follow, which it meets besides its own, as across a groove; a normal of zero means none. `dt` is in seconds since
+/// the last step. The result is finite and the time is bounded; `converged` is false when the solver stopped early.
+/// Throws `Error` when the number of planes or walls fits none of these cases, or when the pose is not finite or its
 /// rotation not a unit quaternion. Cost: 20–60 µs for a spine of 16 segments.
 ///
 /// `start`: null, or what the first of several steps from one state to one pose fills and the others use.

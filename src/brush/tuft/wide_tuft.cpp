@@ -25,6 +25,19 @@ std::span<const ContactPlane> part_of(std::span<const ContactPlane> all, std::si
     return all.size() > 1 ? all.subspan(first, count) : all;
 }
 
+/// Walls of all spines: two beside each node, then, or not, one across from each.
+struct AllWalls {
+    std::span<const ContactPlane> beside, across;
+
+    AllWalls(std::span<const ContactPlane> walls, const Tuft& tuft) {
+        std::size_t nodes = 0;
+        for (const Spine& spine : tuft.spines) nodes += spine.rest_radius.size();
+        if (walls.empty()) return;
+        beside = walls.first(2 * nodes);
+        across = walls.subspan(2 * nodes);
+    }
+};
+
 /// Tangents and broad axes of the nodes of a spine, unit, root first.
 struct NodeAxes {
     Recycled<Vec3> along, broad;
@@ -93,20 +106,24 @@ struct Coupled {
     };
 
     rod::CoupledResult solve(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes,
-                             std::span<const ContactPlane> beside, double dt, const Start& start) {
+                             std::span<const ContactPlane> all_walls, double dt, const Start& start) {
         const Preset& p = tuft.preset;
         const std::size_t k_all = tuft.spines.size();
         laws.clear();
         obstacles.clear();
         walls.clear();
+        const auto [beside, across] = AllWalls(all_walls, tuft);
         std::size_t first = 0;
         for (const Spine& spine : tuft.spines) {
             const std::size_t count = spine.rest_radius.size();
             laws.push_back(law_of(p, tuft.wetness, 1 / spine.share, dt));
             int& most = laws.back().max_iterations;
             if (start.parts > 1) most = std::max(kLeastIterations, most / start.parts);
-            obstacles.push_back(obstacles_of_wide(p, spine, NodeAxes(spine.memory), part_of(planes, first, count)));
+            const NodeAxes axes(spine.memory);
+            obstacles.push_back(obstacles_of_wide(p, spine, axes, part_of(planes, first, count)));
             walls.push_back(flank_walls(p, spine, pose.rotation, part_of(beside, 2 * first, 2 * count), tuft.wetness));
+            if (!across.empty())
+                add_walls_across(obstacles_of_wide(p, spine, axes, part_of(across, first, count)), walls.back());
             first += count;
         }
         Recycled<rod::CoupledRod> rods;
@@ -427,7 +444,7 @@ SolvedSpines solve_spines(Tuft& tuft, const Pose& to, std::span<const ContactPla
         const SpineStep step{.preset = p,
                              .clamp = spine.memory.clamp,
                              .rotation = to.rotation,
-                             .walls = part_of(walls, 2 * first, 2 * count),
+                             .walls = part_of(AllWalls(walls, tuft).beside, 2 * first, 2 * count),
                              .wetness = tuft.wetness,
                              .share = 1 / spine.share};
         out.spines.push_back(finish_spine(step, spine,

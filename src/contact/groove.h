@@ -1,0 +1,42 @@
+#pragma once
+
+#include "contact/node_contact.h"
+
+/// \file
+/// Both walls of a groove. A node between two walls has the plane of the nearer one; pressed by that alone it goes
+/// through the other, and at the next sample the other is the nearer one. Called by contact.h.
+namespace tuft::contact {
+
+/// What a node meets: the surface nearest to it, or both walls that it lies between. Which wall is `own` stays from
+/// sample to sample and agrees between neighbouring nodes, whichever is nearer.
+struct NodeWalls {
+    NodeContact own;
+    NodeContact across;  ///< `triangle` is kNone where there is none
+
+    bool in_groove() const { return across.triangle != kNone; }
+    /// Returns the height of a point over the nearer one, metres.
+    double height(const Vec3& p) const;
+};
+
+/// Returns whether two contacts of one node are of the walls of a groove of less than 73°: none touches the surface
+/// behind the other's plane.
+bool face_each_other(const NodeContact& a, const NodeContact& b);
+
+/// Returns the walls that a node of the given radius, metres, lies between whose nearest surface is `nearest`, where
+/// `known` are the walls that it or its neighbour lay between a little before; `nearest` alone where it is not near
+/// another. Cost: one or two searches for a closest point, within some millimetres.
+NodeWalls find_walls(const mesh::SurfaceQuery& surface, const Vec3& node, const NodeContact& nearest, double radius,
+                     const NodeWalls& known, const NodeContactOptions& options);
+
+/// Returns the walls of chains of nodes (tip first), of which `nearest` are the nearest surfaces. Only the first nodes,
+/// as many as `radii`, metres, lie in grooves. `known`: theirs a little before, or none; then no groove is found.
+Recycled<NodeWalls> find_chain_walls(const mesh::SurfaceQuery& surface, std::span<const Vec3> nodes,
+                                     std::span<const NodeContact> nearest, std::span<const double> radii,
+                                     std::span<const NodeWalls> known, const NodeContactOptions& options);
+
+/// Returns the walls of a node that was bent on those of `before` and came to rest at `node`, where `nearest` is the
+/// nearest surface. `inboard`: of the neighbour towards the root, or null.
+NodeWalls update_walls(const NodeWalls& before, const NodeContact& nearest, const Vec3& node, double radius,
+                       const NodeWalls* inboard);
+
+}  // namespace tuft::contact
