@@ -31,7 +31,8 @@ class BothPrograms : public ::testing::Test {
     /// Returns the command and the options that say the same.
     using MakeCommand = std::function<std::pair<Command, std::string>(const mesh::SurfaceQuery&)>;
 
-    Painted by_studio(const std::string& name, const MakeCommand& make) {
+    /// `before`: commands that come first.
+    Painted by_studio(const std::string& name, const MakeCommand& make, std::vector<Command> before = {}) {
         const std::string project = folder_ + "/studio.tuft";
         std::filesystem::remove(project);
         PaintWork work;
@@ -43,6 +44,7 @@ class BothPrograms : public ::testing::Test {
         auto [command, words] = make(*work.model->query);
         {
             PaintThread painter(std::move(work));
+            for (Command& first : before) painter.post(std::move(first));
             painter.post(std::move(command));
             painter.wait_idle(600);
         }

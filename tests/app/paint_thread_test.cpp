@@ -256,6 +256,13 @@ TEST_F(PaintThreadTest, PosesThatComeFasterThanTheirInkArePaintedAsTheHandMadeTh
     for (std::size_t i = 0; i < samples.size(); ++i) EXPECT_EQ(samples[i].time, poses[i].time);
 }
 
+TEST(StrokeLine, OnlyTheFillOfAnOutlineIsAnArea) {
+    const stroke::FlatArea outline{.rings = {{{0, 0}, {1e-2, 0}, {0, 1e-2}}}, .stops = {{.ink = "carbon"}}};
+    EXPECT_TRUE(stroke_line(stroke::fill_of_area(outline)).is_area);
+    EXPECT_FALSE(stroke_line(stroke::Fill{.ink = "carbon"}).is_area) << "the whole model";
+    EXPECT_FALSE(stroke_line(stroke::PaintStroke{}).is_area);
+}
+
 TEST(PartChanges, SayWhatAnEditChangesEachKindOnce) {
     using What = PartChange::What;
     const ink::Substrate glass = ink::load_substrate("glass"), clay = ink::load_substrate("clay");

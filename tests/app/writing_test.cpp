@@ -8,6 +8,7 @@
 #include "app/document/first_scale.h"
 #include "app/document/snapping.h"
 #include "both_programs.h"
+#include "io/project/restore.h"
 
 namespace tuft::app {
 namespace {
@@ -178,6 +179,35 @@ TEST(Writing, OfSeveralColoursComesInThemAndOfOneInTheChosenInk) {
     EXPECT_FALSE(read_writing(source_folder() + "/samples/strokes/man-bu-ren-sheng.inkml").own_ink) << "one ink";
 }
 
+TEST(Writing, ItsSketchIsItsLinesOrTheOutlinesOfItsAreasInAUnitSquare) {
+    const auto box_of = [](const std::vector<std::vector<Vec2>>& lines) {
+        Box box;
+        for (const std::vector<Vec2>& line : lines)
+            for (const Vec2& p : line) box.add(Vec3(p, 0));
+        return box;
+    };
+    const auto expect_box = [](const Box& box, double margin, double half_height) {
+        constexpr double kChord = 1e-9;  // straight lines
+        EXPECT_NEAR(box.lo.x, margin, kChord);
+        EXPECT_NEAR(box.hi.x, 1 - margin, kChord);
+        EXPECT_NEAR(box.lo.y, 0.5 - half_height, kChord);
+        EXPECT_NEAR(box.hi.y, 0.5 + half_height, kChord);
+    };
+    const std::string file = flag(testing::TempDir());
+    const auto areas = read_sketch(file);
+    EXPECT_EQ(areas.size(), 4u) << "three shapes and a stroke";
+    expect_box(box_of(areas), 0, 0.25);
+    std::ofstream(file) << "<svg xmlns='http://www.w3.org/2000/svg' width='40mm' viewBox='0 0 40 20'><g "
+                           "stroke='black' stroke-width='2'><path d='M0 10 H40'/><path d='M20 0 V20'/></g></svg>";
+    const auto lines = read_sketch(file);
+    EXPECT_EQ(lines.size(), 2u);
+    // Half a line's width lies round them.
+    expect_box(box_of(lines), 1.0 / 42, 10.0 / 42);
+    std::filesystem::remove(file);
+    EXPECT_THROW(read_sketch(file), Error);
+    EXPECT_GT(read_sketch(source_folder() + "/samples/strokes/man-bu-ren-sheng.inkml").size(), 20u);
+}
+
 const WritingHand kHand{"wolf-medium", "carbon"};
 
 TEST_F(WritingOnModel, TheStudioPaintsARoundelOnTheBowlAsTheProgramDoes) {
@@ -240,6 +270,49 @@ TEST_F(WritingOnModel, OneThatNoTuftCanPaintIsRefusedBeforeItsFirstStroke) {
     EXPECT_TRUE(by_studio("cylinder.ply", w, {0, -1, 0.03}, {0, 1, 0}, {1, 0, 0}, hand).journal.empty());
     w.scale = 1;
     EXPECT_EQ(by_studio("cylinder.ply", w, {0, -1, 0.03}, {0, 1, 0}, {1, 0, 0}, hand).journal.size(), 2u);
+}
+
+// A canvas has planes for a few pigments. Inks that were asked for hold theirs: those of the first drawing would leave
+// too few for the second one's.
+TEST_F(WritingOnModel, OneInColoursThatIsRefusedLeavesNoneOfItsInks) {
+    const auto stripes = [&](const std::vector<std::string>& colours) {
+        const std::string file = folder_ + "/stripes.svg";
+        std::ofstream out(file);
+        out << "<svg xmlns='http://www.w3.org/2000/svg' width='16mm' viewBox='0 0 16 10'>";
+        for (std::size_t i = 0; i < colours.size(); ++i)
+            out << "<rect width='4' height='10' x='" << 4 * i << "' fill='" << colours[i] << "'/>";
+        out << "</svg>";
+        out.close();
+        Writing w = read_writing(file);
+        w.own_ink = true;
+        return PaintDrawing{placed_writing(w, stroke::placement_seen({}, {0, 0, 1}, {1, 0, 0}, 0), kHand), {}};
+    };
+    stroke::LayerEdit lock{.what = stroke::LayerChange::change, .layer = {.id = stroke::kFirstLayer}};
+    std::vector<Command> before;
+    lock.layer.locked = true;
+    before.push_back(ChangeLayers{lock});
+    before.push_back(stripes({"#0a3d2a", "#e0b030", "#1b3f9a", "#f0f0e8"}));
+    lock.layer.locked = false;
+    before.push_back(ChangeLayers{lock});
+    const std::string colour = "#c02070";
+    const auto paint = [&](const mesh::SurfaceQuery&) {
+        return std::pair<Command, std::string>(stripes({colour}), "");
+    };
+    const Painted all = BothPrograms::by_studio("sheet.ply", paint, std::move(before));
+    ASSERT_EQ(all.journal.size(), 3u) << "two changes of the layer and one stripe";
+    const io::Project project = io::Project::open(folder_ + "/studio.tuft");
+    EXPECT_EQ(project.inks().size(), 1u);
+    const stroke::Model model = test::shipped_model("sheet.ply", 64);
+    stroke::Document fresh(model), stored(model);
+    io::use_presets(project, stored);
+    fresh.mix_together({{colour, 1}});
+    const std::vector<ink::InkPart>& alone = fresh.materials().ink(colour).parts;
+    const std::vector<ink::InkPart>& mixed = stored.materials().ink(colour).parts;
+    ASSERT_EQ(mixed.size(), alone.size());
+    for (std::size_t i = 0; i < alone.size(); ++i) {
+        EXPECT_EQ(mixed[i].pigment.name, alone[i].pigment.name);
+        EXPECT_NEAR(mixed[i].fraction, alone[i].fraction, 1e-9) << "written and read as text";
+    }
 }
 
 TEST_F(WritingOnModel, StraightThroughThePictureItIsTheSame) {

@@ -79,6 +79,24 @@ TEST_F(PartsOfAProject, LockedOnesGetNoInkAndOnlyLeavesTheOthersOut) {
     EXPECT_NE(replayed(), before);
 }
 
+TEST_F(PartsOfAProject, AreasRoundTheModelMeetNeitherItNorItsLockedParts) {
+    // The sheets are 85 mm across the corners.
+    const auto ring = [&](double radius) {
+        write("r.svg", "<svg xmlns='http://www.w3.org/2000/svg' width='120mm' viewBox='-60 -60 120 120'><circle r='" +
+                           std::to_string(radius) + "' fill='none' stroke='#bd3b25' stroke-width='4'/></svg>");
+        return tuft("paint " + path("m.obj") + " --unit mm --up z --sides file --strokes " + path("r.svg") +
+                    " --place 0,0,4 --place-width " + std::to_string(2 * radius + 4) +
+                    " --mapping project --atlas-size 512 --lock-parts pane");
+    };
+    const Ran round = ring(50), on = ring(20);
+    ASSERT_EQ(round.status, 0) << round.err;
+    EXPECT_EQ(round.err.find("is locked"), std::string::npos) << round.err;
+    EXPECT_NE(round.err.find("1 area covers no texel of the model"), std::string::npos) << round.err;
+    ASSERT_EQ(on.status, 0) << on.err;
+    EXPECT_NE(on.err.find("all that the drawing meets is locked"), std::string::npos) << on.err;
+    EXPECT_EQ(on.err.find("covers no texel"), std::string::npos) << on.err;
+}
+
 TEST_F(PartsOfAProject, BadNamesAreOneLine) {
     for (const char* more : {"--hide-parts pain", "--lock-parts wheel", "--substrate pane=glas", "--substrate pane="}) {
         const Ran ran = paint(more);

@@ -64,9 +64,15 @@ void set_size(WritingForm& form, const Box& box) {
     form.height = box.size().y;
 }
 
-WritingForm line_form(const std::filesystem::path& file) {
+WritingForm read_form(const std::filesystem::path& file, io::SvgPainting painting) {
     WritingForm out;
-    out.traces = io::read_strokes(file, {.note = [&](const Message& line) { out.notes.push_back(line); }});
+    out.traces = io::read_strokes(
+        file,
+        io::SvgOptions{.painting = painting, .ink = {.note = [&](const Message& line) { out.notes.push_back(line); }}});
+    return out;
+}
+
+WritingForm line_form(const std::filesystem::path& file, WritingForm out) {
     std::erase_if(out.traces,
                   [](const stroke::RecordedStroke& t) { return !t.flat || t.on_palette || t.samples.empty(); });
     if (out.traces.empty())
@@ -77,15 +83,9 @@ WritingForm line_form(const std::filesystem::path& file) {
     return out;
 }
 
-// Nothing of a drawing in black alone.
-WritingForm area_form(const std::filesystem::path& file) {
-    WritingForm out;
-    out.traces = io::read_strokes(
-        file, io::SvgOptions{.painting = io::SvgPainting::automatic,
-                             .ink = {.note = [&](const Message& line) { out.notes.push_back(line); }}});
+WritingForm area_form(WritingForm out) {
     std::erase_if(out.traces, [](const stroke::RecordedStroke& t) { return t.before.empty(); });
     const std::vector<stroke::FlatArea*> areas = areas_of(out.traces);
-    if (areas.empty()) return {};
     Box box;
     for (const stroke::FlatArea* area : areas) stroke::add_extent(box, *area);
     set_size(out, box);
@@ -103,16 +103,34 @@ std::size_t count_inks(Writing& w) {
 
 }  // namespace
 
+std::vector<std::vector<Vec2>> read_sketch(const std::filesystem::path& file) {
+    WritingForm form = read_form(file, io::SvgPainting::automatic);
+    form =
+        is_svg(file) && !areas_of(form.traces).empty() ? area_form(std::move(form)) : line_form(file, std::move(form));
+    const double span = std::max({form.width, form.height, 1e-9});
+    std::vector<std::vector<Vec2>> lines = drawn_lines(form);
+    for (std::vector<Vec2>& line : lines)
+        for (Vec2& p : line) p = (p - form.centre) / span + 0.5;
+    return lines;
+}
+
 Writing read_writing(const std::filesystem::path& file) {
     Writing out{.file = file};
     std::optional<Error> fault;  // of the areas: the file may have lines nevertheless
+    std::optional<WritingForm> lines;
     try {
-        if (is_svg(file)) out.areas = area_form(file);
+        WritingForm form = read_form(file, io::SvgPainting::automatic);
+        if (is_svg(file) && !areas_of(form.traces).empty())
+            out.areas = area_form(std::move(form));
+        else
+            lines = std::move(form);
     } catch (const Error& e) {
+        if (!is_svg(file)) throw;
         fault = e;
     }
     try {
-        out.lines = line_form(file);
+        if (!lines) lines = read_form(file, io::SvgPainting::brush);
+        out.lines = line_form(file, std::move(*lines));
     } catch (const Error&) {
         if (fault) throw *fault;
         if (out.areas.traces.empty()) throw;  // a picture has no lines

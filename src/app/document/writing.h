@@ -42,6 +42,11 @@ struct Writing {
 /// nothing in it is flat.
 Writing read_writing(const std::filesystem::path& file);
 
+/// Returns the lines that an InkML file, or an SVG in black alone, is painted by, or the outlines of the areas of an
+/// SVG in colours; the longer side of the drawing is [0, 1], its centre (0.5, 0.5), y down. Reads the file once. Throws
+/// `Error` as `read_writing`. Any thread.
+std::vector<std::vector<Vec2>> read_sketch(const std::filesystem::path& file);
+
 /// Returns a point of the model rounded to 0.001 mm, as options state it; metres.
 Vec3 rounded_place(const Vec3& at);
 

@@ -115,15 +115,45 @@ std::vector<stroke::JournalEntry> StrokePainter::entries_of(PaintDrawing& comman
                            drawing.fit, widths_);
     stroke::redip_long_lines(drawing.entries, drawing.fit, widths_);
     stroke::press_to_widths(drawing.entries, widths_);
-    stroke::mix_drawing_inks(drawing.entries, *context_.work.document);
     return std::move(drawing.entries);
+}
+
+// Puts entries onto the layer and within the mask of their group.
+void StrokePainter::direct(std::vector<stroke::JournalEntry>& entries, const GroupSettings& settings) {
+    for (stroke::JournalEntry& entry : entries) {
+        if (stroke::Fill* fill = entry.as<stroke::Fill>()) {
+            fill->layer = context_.layer_of(settings.layer);
+            fill->mask = settings.mask;
+        }
+        if (stroke::PaintStroke* stroke = entry.as<stroke::PaintStroke>()) {
+            stroke->layer = context_.layer_of(settings.layer);
+            stroke->mask = settings.mask;
+            if (settings.wet) stroke->settings.film = stroke::FilmModel::wet;
+        }
+        context_.work.document->check_layer(entry);
+    }
 }
 
 void StrokePainter::paint_drawing(PaintDrawing& command) {
     cancel();
     const ProgressFn shown = context_.progress("Placing the drawing");
     shown("", 0);
-    paint_group(entries_of(command), command.group, shown);
+    std::vector<stroke::JournalEntry> entries = entries_of(command);
+    direct(entries, command.group);
+    stroke::Document& document = *context_.work.document;
+    const std::uint64_t before = document.journal().next_id();
+    const std::vector<std::string> mixed = stroke::mix_drawing_inks(entries, document);
+    // Of a drawing that is refused nothing stays, or the next one would be mixed from its pigments.
+    const auto forget_unused = [&] {
+        if (document.journal().next_id() == before) document.forget_inks(mixed);
+    };
+    try {
+        paint_group(std::move(entries), command.group, shown);
+    } catch (...) {
+        forget_unused();
+        throw;
+    }
+    forget_unused();
 }
 
 void StrokePainter::paint_text(PaintText& command) {
@@ -137,6 +167,7 @@ void StrokePainter::paint_text(PaintText& command) {
     fit.film = film_of_inks();
     std::vector<stroke::JournalEntry> entries =
         lettering_entries(command.text, command.place, hand, fit, widths_, plans);
+    direct(entries, command.group);
     paint_group(std::move(entries), command.group, context_.progress("Writing the text"));
 }
 
@@ -162,22 +193,12 @@ void StrokePainter::paint_group(std::vector<stroke::JournalEntry> entries, const
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (!shown("", static_cast<double>(i) / static_cast<double>(all.size()))) break;
         context_.prepare(all[i]);
-        if (stroke::Fill* fill = all[i].as<stroke::Fill>()) {
-            fill->layer = context_.layer_of(settings.layer);
-            fill->mask = settings.mask;
-            touched = true;
-        }
-        if (stroke::PaintStroke* stroke = all[i].as<stroke::PaintStroke>()) {
-            stroke->layer = context_.layer_of(settings.layer);
-            stroke->mask = settings.mask;
-            if (settings.wet) stroke->settings.film = stroke::FilmModel::wet;
-        }
         if (i % in_group == 0 && !settings.name.empty())
             group = {context_.work.document->journal().next_group_id(), settings.name};
         all[i].group = group;
         const stroke::StrokeReport report = context_.work.document->paint(std::move(all[i]));
         ink += report.ink_given;
-        touched = touched || report.touched();
+        touched = touched || report.touched() || report.met;
         context_.work.autosave.add(context_.work.document->journal().entries().back());
         ++context_.history.done.back().made;
         context_.publisher.publish(true);

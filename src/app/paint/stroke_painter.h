@@ -35,6 +35,7 @@ class StrokePainter {
     void add_copies(const stroke::JournalEntry& original, std::size_t& made);
     std::function<double(const std::string&)> film_of_inks() const;
     std::vector<stroke::JournalEntry> entries_of(PaintDrawing& command);
+    void direct(std::vector<stroke::JournalEntry>& entries, const GroupSettings& settings);
     void paint_group(std::vector<stroke::JournalEntry> entries, const GroupSettings& settings, const ProgressFn& shown);
 
     PaintContext& context_;

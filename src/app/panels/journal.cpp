@@ -22,10 +22,6 @@ bool is_stroke(const StrokeLine& line) {
     return line.action == stroke::EntryKind::stroke;
 }
 
-bool is_fill(const StrokeLine& line) {
-    return line.action == stroke::EntryKind::fill;
-}
-
 unsigned colour_of(const JournalParts& s, const StrokeLine& line) {
     return (ink_colour(s.colours, line.ink) & 0x00ffffffu) | (line.hidden ? 0x60000000u : 0xff000000u);
 }
@@ -378,7 +374,7 @@ void draw_row(const JournalParts& s, const JournalRow& row) {
         const auto n = static_cast<std::size_t>(
             std::count_if(lines.begin(), lines.end(), [](const StrokeLine* l) { return is_stroke(*l); }));
         // A drawing in its colours has areas alone; a group of other entries has any of them.
-        const bool areas = std::all_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return is_fill(*l); });
+        const bool areas = std::all_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return l->is_area; });
         const Message count = n > 0   ? Message(n == 1 ? "{} stroke" : "{} strokes", n)
                               : areas ? Message(lines.size() == 1 ? "{} area" : "{} areas", lines.size())
                                       : Message(lines.size() == 1 ? "{} entry" : "{} entries", lines.size());

@@ -110,7 +110,7 @@ void poll_paint_thread(Session& s) {
 
 bool is_settled(const Session& s) {
     return !s.project.opening.running() && !s.colours.choice.finder.busy() &&
-           !s.tools.letters.busy(s.tools.lettering) && !s.tools.copies.busy() &&
+           !s.tools.letters.busy(s.tools.lettering) && !s.tools.copies.busy() && !s.dialogs.file.busy() &&
            (!s.paint_thread || s.paint_thread->idle()) && !s.tools.pointer_down;
 }
 

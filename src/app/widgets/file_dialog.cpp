@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -285,24 +286,29 @@ bool FileDialog::draw_list(Ui& ui, float width) {
     return twice;
 }
 
-// The lines of the chosen drawing.
+bool FileDialog::busy() const {
+    return shown_ && sketch_.reading.valid() &&
+           sketch_.reading.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+}
+
+// The lines of the chosen drawing, as soon as they are read. One file is read at a time: of those that are chosen
+// meanwhile, the last.
 void FileDialog::load_sketch() {
     const fs::path file = folder_ / name_.text;
+    if (busy()) return;
+    if (sketch_.reading.valid()) sketch_.lines = sketch_.reading.get();
     if (sketch_.file == file.string()) return;
     sketch_.file = file.string();
     sketch_.lines.clear();
     std::error_code ec;
     if (!fs::is_regular_file(file, ec) || fs::file_size(file, ec) > kMostSketched) return;
-    try {
-        const Writing writing = read_writing(file);
-        const WritingForm& drawing = writing.form();
-        const double span = std::max({drawing.width, drawing.height, 1e-9});
-        sketch_.lines = drawn_lines(drawing);
-        for (std::vector<Vec2>& line : sketch_.lines)
-            for (Vec2& p : line) p = (p - drawing.centre) / span + 0.5;
-    } catch (const std::exception&) {
-        // Who opens it hears what is wrong.
-    }
+    sketch_.reading = std::async(std::launch::async, [file]() -> std::vector<std::vector<Vec2>> {
+        try {
+            return read_sketch(file);
+        } catch (const std::exception&) {
+            return {};  // who opens it hears what is wrong
+        }
+    });
 }
 
 void FileDialog::draw_preview(Ui& ui, Pictures& pictures, float width) {
@@ -322,6 +328,7 @@ void FileDialog::draw_preview(Ui& ui, Pictures& pictures, float width) {
             const float side = 0.9f * height;
             draw->AddRectFilled(at, ImVec2(at.x + width, at.y + height), IM_COL32(238, 236, 230, 255), ui.px(4));
             for (const std::vector<Vec2>& line : sketch_.lines) {
+                if (sketch_.file != file.string()) break;  // another one, that is still read
                 std::vector<ImVec2> points;
                 points.reserve(line.size());
                 for (const Vec2& p : line)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <future>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,7 @@ class FileDialog {
     void show(Purpose purpose, const std::filesystem::path& start);
     bool shown() const { return shown_; }
     void close() { shown_ = false; }
+    bool busy() const;  ///< the preview is being read
     Purpose purpose() const { return purpose_; }
     bool reads() const;  ///< true: an existing file is chosen; false: a file to write
     const std::filesystem::path& folder() const { return folder_; }
@@ -86,7 +88,8 @@ class FileDialog {
     /// Lines of a drawing, for the preview.
     struct Sketch {
         std::string file;
-        std::vector<std::vector<Vec2>> lines;  ///< in [0, 1], y down
+        std::vector<std::vector<Vec2>> lines;                 ///< `read_sketch`; empty while they are read
+        std::future<std::vector<std::vector<Vec2>>> reading;  ///< on a thread of its own
     };
 
     bool shown_ = false, ask_replace_ = false;

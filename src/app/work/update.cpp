@@ -43,7 +43,10 @@ StrokeLine stroke_line(const stroke::JournalEntry& entry) {
     const bool flat = stroke::samples_of(entry).flat;
     const std::vector<stroke::StrokeSample>& samples = stroke::samples_of(entry).samples;
     if (stroke && flat && !line.on_palette) line.placement = stroke->trace.placement;
-    if (const auto* fill = entry.as<stroke::Fill>(); fill && fill->area) line.placement = fill->area->placement;
+    if (const auto* fill = entry.as<stroke::Fill>(); fill && fill->area) {
+        line.is_area = true;
+        line.placement = fill->area->placement;
+    }
     if (samples.empty()) return line;
     Vec3 normal(0);
     Vec3 mean(0);

@@ -38,7 +38,7 @@ struct StrokeLine {
     std::vector<PartChange> part_changes;       ///< of parts
     std::string brush, ink, label;
     stroke::EntryGroup group;
-    bool hidden = false, erases = false, on_palette = false;
+    bool hidden = false, erases = false, on_palette = false, is_area = false;
     double length = 0;                           ///< metres, of the path
     std::vector<Vec3f> path;                     ///< x, y in [0, 1], y down; z: pressure in [0, 1]
     bool flat = false;                           ///< `path` is in the frame of a drawing

@@ -188,7 +188,7 @@ std::optional<io::Project> output_project(const Paint& a, bool in_place, OpenPro
 struct Painted {
     std::vector<stroke::StrokeReport> reports;      ///< of strokes
     std::vector<const stroke::JournalEntry*> done;  ///< the strokes themselves
-    std::size_t areas = 0;
+    std::size_t areas = 0, areas_met = 0;
     double ink = 0;  ///< film units · m²
     std::size_t stamps = 0;
     double prepared = 0, first_stamp = 0, seconds = 0;  ///< s; the first two since the start
@@ -215,7 +215,7 @@ Painted paint_strokes(const std::vector<stroke::JournalEntry>& strokes, stroke::
             strokes,
             [&](const stroke::JournalEntry& entry, stroke::StrokeReport report) {
                 if (const stroke::Fill* fill = entry.as<stroke::Fill>(); fill && fill->area)
-                    ++out.areas, area_ink += report.ink_given;
+                    ++out.areas, out.areas_met += report.met ? 1 : 0, area_ink += report.ink_given;
                 if (entry.as<stroke::PaintStroke>()) out.reports.push_back(std::move(report));
                 if (commits) commits->add(entry);
             },
@@ -242,6 +242,12 @@ Painted paint_strokes(const std::vector<stroke::JournalEntry>& strokes, stroke::
     return out;
 }
 
+void note_missed_areas(const Painted& painted, Console& console) {
+    if (const std::size_t missed = painted.areas - painted.areas_met; missed > 0)
+        console.note(fmt::format("warning: {} {} no texel of the model", counted(missed, "area"),
+                                 missed == 1 ? "covers" : "cover"));
+}
+
 bool is_masked_or_erases(const stroke::JournalEntry& entry) {
     if (const auto* s = entry.as<stroke::PaintStroke>()) return s->mask != 0 || s->erases();
     const auto* fill = entry.as<stroke::Fill>();
@@ -251,7 +257,7 @@ bool is_masked_or_erases(const stroke::JournalEntry& entry) {
 // A note for a drawing all of which lies on locked parts. Masks take ink away, too: with them nothing is said.
 void note_locked(const Painted& painted, const std::vector<stroke::JournalEntry>& strokes,
                  const stroke::PartTable& parts, Console& console) {
-    const bool touched = painted.areas > 0 || std::ranges::any_of(painted.reports, &stroke::StrokeReport::touched);
+    const bool touched = painted.areas_met > 0 || std::ranges::any_of(painted.reports, &stroke::StrokeReport::touched);
     if (painted.ink > 0 || !touched || std::ranges::any_of(strokes, is_masked_or_erases)) return;
     std::vector<std::string> names;
     for (const stroke::Part& part : parts.parts)
@@ -262,7 +268,7 @@ void note_locked(const Painted& painted, const std::vector<stroke::JournalEntry>
 }
 
 void print_painted(const Painted& painted, const stroke::Model& model, const Paint& a) {
-    const auto& [reports, done, areas, ink, stamps, prepared, first_stamp, seconds] = painted;
+    const auto& [reports, done, areas, areas_met, ink, stamps, prepared, first_stamp, seconds] = painted;
     const std::string painted_areas = areas == 0 ? "" : counted(areas, "area");
     const std::string painted_strokes =
         reports.empty() && areas > 0 ? ""
@@ -358,6 +364,7 @@ int paint(const Paint& a, const StrokeSource& source) {
     Painted painted = paint_strokes(strokes, painting, project, a, console, start);
     painted.prepared = prepared;
     note_misses(painted.reports, painted.done, console);
+    note_missed_areas(painted, console);
     note_dry(painted.reports, console);
     note_locked(painted, strokes, painting.parts().table(), console);
     note_inside(painted.reports, painted.done, model.mesh->bounds, console);

@@ -157,11 +157,10 @@ FillResult apply_area(const Fill& fill, const PaintTarget& target, const FlatTex
     const double width = map.texel_size;
     const AreaRaster raster = raster_of(area, texels.lattice(), 0.5 * width);
     const Vec2f low(raster.low() - width), high(raster.high() + width);
-    std::vector<const FlatTexels::Tile*> tiles;
+    std::vector<const FlatTexels::Tile*> tiles, masked;
     for (const FlatTexels::Tile& tile : texels.tiles())
-        if (tile.low.x <= high.x && tile.low.y <= high.y && tile.high.x >= low.x && tile.high.y >= low.y &&
-            !(target.mask && target.mask->none(tile.slot)))
-            tiles.push_back(&tile);
+        if (tile.low.x <= high.x && tile.low.y <= high.y && tile.high.x >= low.x && tile.high.y >= low.y)
+            (target.mask && target.mask->none(tile.slot) ? masked : tiles).push_back(&tile);
 
     std::vector<TileArea> parts(tiles.size());
     parallel_for(tiles.size(), 16, [&](std::size_t begin, std::size_t end) {
@@ -179,6 +178,11 @@ FillResult apply_area(const Fill& fill, const PaintTarget& target, const FlatTex
     FillResult result;
     for (std::size_t i = 0; i < tiles.size(); ++i)
         if (parts[i].any) result.before.push_back(target.canvas.snapshot(tiles[i]->slot));
+    result.met = !result.before.empty() || std::ranges::any_of(masked, [&](const FlatTexels::Tile* tile) {
+        TileArea part;
+        find_cover(part, *tile, area, raster, width);
+        return part.any;
+    });
 
     std::vector<ink::Amounts> deposited(tiles.size());
     parallel_for(tiles.size(), 16, [&](std::size_t begin, std::size_t end) {

@@ -19,6 +19,7 @@ struct FillMixes {
 struct FillResult {
     std::vector<ink::TileSnapshot> before;  ///< tiles that it may have written to, by slot
     double ink_given = 0;                   ///< film·m²
+    bool met = false;                       ///< an area lies on texels, masked ones among them
 };
 
 /// Lays the film of `fill` on every texel of its region, weighted by the mask; on the palette the film's water comes

@@ -85,7 +85,11 @@ class Document {
     void use(const ink::Ink& ink) { materials_.use(ink); }
     void use(const ink::Substrate& substrate) { materials_.use(substrate); }
     /// `Materials::mix_together`.
-    void mix_together(const std::map<std::string, double>& weights) { materials_.mix_together(weights); }
+    std::vector<std::string> mix_together(const std::map<std::string, double>& weights) {
+        return materials_.mix_together(weights);
+    }
+    /// `Materials::forget_inks`. No entry of the journal may name one of them.
+    void forget_inks(const std::vector<std::string>& names) { materials_.forget_inks(names); }
 
     /// Performs the entry and appends it to the journal. Throws `Error`, before anything is changed, for an unknown
     /// brush, ink, layer or mask, a locked layer, a stroke without samples. Throws `Cancelled` when `progress` stops
@@ -105,6 +109,8 @@ class Document {
     /// Throws the `Error` of `paint` for a stroke of the model that is too large: its brush is too wide for the texels,
     /// or its path is at least twice the longest that is painted. Paints nothing and maps nothing to the surface.
     void check_size(const JournalEntry& entry);
+    /// Throws the `Error` of `paint` for an entry whose layer, mask or part is missing, or whose layer is locked.
+    void check_layer(const JournalEntry& entry) const;
 
     /// The same in pieces for a hand in space: `begin`, any number of `extend`, then `end` or `cancel`, which takes the
     /// stroke back. `entry` holds a `PaintStroke`, whose samples may be empty.
@@ -134,7 +140,6 @@ class Document {
     void restore_undone(std::vector<JournalEntry> undone) { journal_.restore_undone(std::move(undone)); }
 
   private:
-    void check_layer(const JournalEntry& entry) const;
     void settle(PaintStroke& stroke) const;
     void settle(EntryContent& content) const;
 

@@ -173,7 +173,7 @@ StrokeReport Document::fill(std::uint64_t id, const Fill& fill) {
     UndoRecord undo{.entry = id};
     undo.tiles.push_back({fill.layer, std::move(result.before)});
     record(std::move(undo));
-    return {.stroke_id = id, .ink_given = result.ink_given};
+    return {.stroke_id = id, .ink_given = result.ink_given, .met = result.met};
 }
 
 void Document::edit_layers(std::uint64_t id, const LayerEdit& edit) {

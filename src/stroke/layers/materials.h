@@ -40,8 +40,10 @@ class Materials {
     const ink::Ink& ink(const std::string& name) const;
     /// Mixes the inks of a drawing's colours (`#rrggbb`) from pigments that suit all of them together
     /// (`ink::choose_pigments`), because a canvas has planes for few. Those already known stay. Without it each is
-    /// mixed when it is first asked for, and the last ones get what is left.
-    void mix_together(const std::map<std::string, double>& weights);
+    /// mixed when it is first asked for, and the last ones get what is left. Returns the names of those it mixed.
+    std::vector<std::string> mix_together(const std::map<std::string, double>& weights);
+    /// Inks of these names are as if they had never been asked for. No layer may hold any.
+    void forget_inks(const std::vector<std::string>& names);
     /// What the ink is painted on.
     const ink::Substrate& substrate() const { return substrate_; }
 

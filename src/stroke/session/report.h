@@ -43,6 +43,7 @@ struct StrokeReport {
     std::size_t stamps = 0;       ///< poses at which the tuft touched
     std::size_t unconverged = 0;  ///< of them, solved only to the iteration limit
     double ink_given = 0;         ///< film·m², now on the texels
+    bool met = false;             ///< an area of a drawing lies on texels of visible parts, locked ones among them
     double ink_left = 0;          ///< film·m², in the tuft
     double path = 0;              ///< metres of the hand while the tuft touched
     Dryness dryness;
