@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <map>
 #include <set>
@@ -109,6 +110,40 @@ TEST_F(Panels, AScrollbarShiftsNoColumn) {
     }
 }
 
+// A way to lay the tools out is chosen for the height; the next frame chooses the same.
+TEST_F(Panels, TheToolsKeepTheirLayoutAtEachHeightOfTheWindow) {
+    std::string script = kBowl;
+    for (int height = 576; height <= 640; height += 16) {
+        script += "resize 1000 " + std::to_string(height) + "\nwait 0.1\n";
+        for (int frame = 0; frame < 3; ++frame) script += "places\nreport\nwait 0.03\n";
+    }
+    const Ran ran = studio(script, "--headless --size 1000x720");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const auto turns = places_in_turn(ran.out);
+    ASSERT_EQ(turns.size(), 15u);
+    for (std::size_t i = 0; i < turns.size(); i += 3)
+        for (const char* label : {"wolf-large", "carbon", "Wet ink"})
+            for (const std::size_t later : {i + 1, i + 2})
+                EXPECT_EQ(turns[i].at(label), turns[later].at(label)) << label << " at height " << i / 3;
+}
+
+// Hex codes say no more than the colours themselves, and a drawing brings many.
+TEST_F(Panels, InksNamedByTheirColoursStandInSmallBelowTheOthers) {
+    std::ofstream(path("two.svg")) << "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path fill='#bd3b25' "
+                                      "d='M0 0 h4 v9 h-4 z'/><path fill='#1b2f5a' d='M5 0 h4 v9 h-4 z'/></svg>";
+    const Ran ran = studio(kBowl + "open " + path("two.svg") +
+                               "\nwait-ready\nset writing-width 10\nmove 50%,60%\nwait 0.1\npress\nrelease\n"
+                               "wait-ready\nwait 0.2\nplaces\n",
+                           "--headless --size 1280x1000");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    auto at = places(ran.out);
+    for (const char* label : {"#bd3b25", "#1b2f5a", "water", "carbon", "cinnabar", "bone-black"})
+        ASSERT_TRUE(at.contains(label)) << label;
+    EXPECT_EQ(at["#bd3b25"].second, at["#1b2f5a"].second);
+    EXPECT_GT(at["#bd3b25"].second, at["water"].second);
+    EXPECT_LT(std::abs(at["#bd3b25"].first - at["#1b2f5a"].first), 0.6 * (at["cinnabar"].first - at["carbon"].first));
+}
+
 TEST_F(Panels, WhatIsFoldedStaysFolded) {
     const Ran first = studio(kBowl +
                                  "click \"fold Symmetry\"\nwait 0.1\nexpect label \"Radial copies\"\nclick \"fold "
@@ -190,7 +225,9 @@ TEST_F(Panels, TheFileDialogMakesFoldersFiltersSortsAndRemembersWhereOneWas) {
                    "set tool writing\nwait 0.1\nclick \"Writing or drawing...\"\nwait 0.2\nexpect label \"folder "
                    "drafts\"\nclick \"file name\"\nkey ctrl+a\ntype " +
                    folder_.string() +
-                   "\nkey enter\nwait 0.2\n"
+                   "\nkey enter\nwait 0.2\nclick \"file name\"\nkey ctrl+a\ntype none.svg\nkey enter\nwait 0.1\nexpect "
+                   "label \"File fault\"\n"
+                   "click vase.svg\nwait 0.1\n"
                    "places\nclick \"by Name\"\nwait 0.1\nclick filter\ntype bowl\nwait 0.2\nplaces\nclick "
                    "bowl-two.svg\nwait 0.2\nexpect label Preview\nclick Open\nwait 0.1\nexpect label Width\n",
                "--headless --size 1280x720");
@@ -201,6 +238,7 @@ TEST_F(Panels, TheFileDialogMakesFoldersFiltersSortsAndRemembersWhereOneWas) {
     auto first = places(ran.out.substr(0, second - 40)),
          filtered = places(ran.out.substr(ran.out.rfind('\n', second) + 1));
     EXPECT_TRUE(first.contains("vase.svg"));
+    EXPECT_FALSE(first.contains("File fault")) << "another file is chosen";
     EXPECT_FALSE(filtered.contains("vase.svg"));
     EXPECT_LT(first["bowl-one.svg"].second, first["bowl-two.svg"].second);
     EXPECT_GT(filtered["bowl-one.svg"].second, filtered["bowl-two.svg"].second) << "sorted the other way round";

@@ -48,6 +48,8 @@ quietly 'cd /root; tuft paint /usr/share/tuft/models/bowl.ply --strokes /usr/sha
   tuft inspect bowl.glb | grep -q "UVs: "; test -s bowl.png; tuft brush | grep -q wolf-medium
   tuft write models/bowl.ply --text 春 --style line --size 8 --atlas-size 512 --preview text.png; test -s text.png'
 
+inside 'zcat /usr/share/man/man1/tuft.1.gz | grep -q "^\.SH NAME"' || fail "the manual page"
+
 echo "== models by the importer"  # a program of its own, with libraries of its own
 cp "$(dirname "$0")"/../fuzz/corpus/fbx/box.fbx "$(dirname "$0")"/../fuzz/corpus/dae/box.dae "$root/root/"
 quietly 'cd /root; for model in box.fbx box.dae; do tuft inspect "$model" | grep "15 triangles"; done'

@@ -215,8 +215,8 @@ void brush_cell(Session& s, const std::string& name, ImVec2 size) {
 }
 
 /// All brushes in rows, a group for each family, its name under it. Where there is little room, they stand group by
-/// group without a gap. Returns the number of rows.
-float rack_rows(Session& s, const std::vector<BrushFamily>& families, ToolRoom room) {
+/// group without a gap. Returns the number of rows; without `draws` nothing else.
+float rack_rows(Session& s, const std::vector<BrushFamily>& families, ToolRoom room, bool draws) {
     const Ui& ui = s.ui;
     const bool named = room != ToolRoom::tight;
     const float all = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX(), gap = named ? ui.px(8) : 0,
@@ -235,17 +235,21 @@ float rack_rows(Session& s, const std::vector<BrushFamily>& families, ToolRoom r
         x += std::max(0.0f, indent);
         for (const std::string& name : family.names) {
             if (x + cell > all + 1) x = 0, y += row, ++rows;
-            ImGui::SetCursorPos(ImVec2(left + x, y));
-            brush_cell(s, name, {cell, height});
+            if (draws) {
+                ImGui::SetCursorPos(ImVec2(left + x, y));
+                brush_cell(s, name, {cell, height});
+            }
             x += cell;
         }
         if (!named) continue;
         x = here + taken + gap;
+        if (!draws) continue;
         ImGui::SetCursorPos(ImVec2(left + here, y + height));
         const ImVec2 at = ImGui::GetCursorScreenPos();
         ImGui::GetWindowDrawList()->AddText(ImGui::GetFont(), letters, ImVec2(at.x + 0.5f * (taken - text), at.y),
                                             ui.faint, title);
     }
+    if (!draws) return rows;
     ImGui::SetCursorPos(ImVec2(left, y + row));
     ImGui::Dummy(ImVec2(0, 0));
     return rows;
@@ -313,7 +317,8 @@ void brush_card(Session& s, const std::string& name, float width) {
                       ui.tr(gone ? "The file is missing" : "Cannot be read"));
         ui.mark_at((gone ? "missing " : "damaged ") + name, last.x, last.y);
     } else {
-        draw->AddText(ImGui::GetFont(), letters, last, ui.faint, card_size(there.preset).c_str());
+        draw->AddText(ImGui::GetFont(), letters, last, is_chosen(s.brush, name) ? ui.strong : ui.faint,
+                      card_size(there.preset).c_str());
     }
     draw->PopClipRect();
     if (own && forget_button(ui, name, ImVec2(end.x, at.y))) forget_own_brush(s.brush, std::string(name));
@@ -357,11 +362,15 @@ Savings brush_rack(Session& s, ToolRoom room) {
     Ui& ui = s.ui;
     const std::string chosen = ui.title(brush::sized_name(s.brush.preset).base);
     if (!ui.section("Brush", true, chosen.c_str())) return {};
-    const float rows = rack_rows(s, s.brush.shelf.families(s.brush.presets), room);
+    // By the rows of each way, or the panel would go to and fro between two that each seem to have room for the other.
+    const std::vector<BrushFamily> families = s.brush.shelf.families(s.brush.presets);
+    const float named = rack_rows(s, families, ToolRoom::full, false),
+                tight = rack_rows(s, families, ToolRoom::tight, false);
+    rack_rows(s, families, room, true);
     tried_row(s, ui.px(kTriedHeights[static_cast<int>(room)]));
     const float letters = 0.8f * ImGui::GetFontSize();
-    return {rows * ui.px(kRackHeights[0] - kRackHeights[1]) + ui.px(kTriedHeights[0] - kTriedHeights[1]),
-            rows * (ui.px(kRackHeights[0] - kRackHeights[2]) + 1.2f * letters) +
+    return {named * ui.px(kRackHeights[0] - kRackHeights[1]) + ui.px(kTriedHeights[0] - kTriedHeights[1]),
+            named * (ui.px(kRackHeights[0]) + 1.2f * letters) - tight * ui.px(kRackHeights[2]) +
                 ui.px(kTriedHeights[0] - kTriedHeights[2])};
 }
 

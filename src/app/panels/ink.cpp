@@ -45,6 +45,7 @@ struct Swatch {
     std::string id, title;
     unsigned colour = 0;
     bool chosen = false;
+    bool own = false;  ///< of the person, not yet of this work
 };
 
 struct SwatchSize {
@@ -68,6 +69,14 @@ SwatchSize swatch_size(const Ui& ui, ToolRoom room) {
     return size;
 }
 
+SwatchSize small_swatch_size(const Ui& ui) {
+    SwatchSize size{.columns = 9, .lines = 0, .radius = ui.px(7)};
+    const float gap = ui.px(2);
+    size.width = (ImGui::GetContentRegionAvail().x + gap) / static_cast<float>(size.columns) - gap;
+    size.height = 2 * size.radius + ui.px(4);
+    return size;
+}
+
 // A swatch with its name under it; true when it was pressed.
 bool named_swatch(Ui& ui, const Swatch& shown, const std::string& label, const SwatchSize& size) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -86,7 +95,12 @@ bool named_swatch(Ui& ui, const Swatch& shown, const std::string& label, const S
     return pressed;
 }
 
-// The inks of this work, then the person's own, but for those that are part of it already.
+bool is_colour(const Swatch& shown) {
+    return shown.title.starts_with('#');
+}
+
+// The inks of this work, then the person's own, but for those that are part of it already. Those that are named by
+// their colours come last.
 std::vector<Swatch> list_swatches(const InkParts& s) {
     std::vector<Swatch> all;
     std::vector<std::string> names = ink_names(s.colours);
@@ -97,7 +111,8 @@ std::vector<Swatch> list_swatches(const InkParts& s) {
         all.push_back({name, s.ui.tr(name.c_str()), ink_colour(s.colours, name), name == s.brush.ink});
     for (const ink::Ink& own : s.colours.choice.saved)
         if (std::find(names.begin(), names.end(), own.name) == names.end())
-            all.push_back({"own " + own.name, own.name, ink_colour(s.colours, own), false});
+            all.push_back({"own " + own.name, own.name, ink_colour(s.colours, own), false, true});
+    std::ranges::stable_partition(all, [](const Swatch& shown) { return !is_colour(shown); });
     return all;
 }
 
@@ -107,39 +122,47 @@ void choose_own(const InkParts& s, const std::string& name) {
     if (at != saved.end()) take_mix(s.colours, s.brush, *at);
 }
 
+void swatch_button(const InkParts& s, const Swatch& shown, const std::string& label, const SwatchSize& size) {
+    if (named_swatch(s.ui, shown, label, size)) {
+        if (shown.own)
+            choose_own(s, shown.title);
+        else
+            s.brush.ink = shown.id;
+    }
+    s.ui.mark(shown.id);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("%s", (shown.own ? shown.title : recipe_text(s.ui, s.colours, shown.id)).c_str());
+    if (shown.own && ImGui::BeginPopupContextItem()) {
+        if (s.ui.menu_item("Forget this ink")) forget_own_ink(s.colours.choice, shown.title);
+        ImGui::EndPopup();
+    }
+}
+
+// Those with names, then in small those whose name says no more than their colour, such as all of a drawing's.
 Savings swatches(const InkParts& s, ToolRoom room) {
     const SwatchSize size = swatch_size(s.ui, room), full = swatch_size(s.ui, ToolRoom::full),
-                     compact = swatch_size(s.ui, ToolRoom::compact), tight = swatch_size(s.ui, ToolRoom::tight);
+                     compact = swatch_size(s.ui, ToolRoom::compact), tight = swatch_size(s.ui, ToolRoom::tight),
+                     small = small_swatch_size(s.ui);
     const std::vector<Swatch> all = list_swatches(s);
+    const auto n_named = static_cast<std::size_t>(std::ranges::find_if(all, is_colour) - all.begin());
     std::vector<std::string> titles;
-    for (const Swatch& one : all) titles.push_back(one.title);
+    for (std::size_t i = 0; i < n_named; ++i) titles.push_back(all[i].title);
     const auto width_of = [&](const std::string& text) {
         return ImGui::GetFont()->CalcTextSizeA(size.letters, 1e9f, 0, text.c_str()).x;
     };
     const std::vector<std::string> labels =
         make_distinct(titles, {std::max<std::size_t>(1, size.lines), size.width, width_of});
     const float gap = s.ui.px(2);
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(gap, s.ui.px(2)));
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(gap, gap));
     for (std::size_t i = 0; i < all.size(); ++i) {
-        if (i % size.columns) ImGui::SameLine(0, gap);
-        const bool own = i >= ink_names(s.colours).size() && all[i].id != all[i].title;
-        if (named_swatch(s.ui, all[i], labels[i], size)) {
-            if (own)
-                choose_own(s, all[i].title);
-            else
-                s.brush.ink = all[i].id;
-        }
-        s.ui.mark(all[i].id);
-        if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("%s", (own ? all[i].title : recipe_text(s.ui, s.colours, all[i].id)).c_str());
-        if (own && ImGui::BeginPopupContextItem()) {
-            if (s.ui.menu_item("Forget this ink")) forget_own_ink(s.colours.choice, all[i].title);
-            ImGui::EndPopup();
-        }
+        const bool named = i < n_named;
+        const std::size_t place = named ? i : i - n_named;
+        if (place % (named ? size : small).columns) ImGui::SameLine(0, gap);
+        swatch_button(s, all[i], named ? labels[i] : "", named ? size : small);
     }
     ImGui::PopStyleVar();
-    const float whole = full.height_of(all.size(), gap);
-    return {whole - compact.height_of(all.size(), gap), whole - tight.height_of(all.size(), gap)};
+    const float whole = full.height_of(n_named, gap);
+    return {whole - compact.height_of(n_named, gap), whole - tight.height_of(n_named, gap)};
 }
 
 // Width of a button of which n fill the row, at a scale of 1.

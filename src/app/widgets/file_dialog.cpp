@@ -265,7 +265,7 @@ bool FileDialog::draw_list(Ui& ui, float width) {
             if (entry.folder)
                 enter = folder_ / entry.name;
             else
-                choose_name(entry.name);
+                choose_name(entry.name), fault_ = {};
             twice = twice || (!entry.folder && ImGui::IsMouseDoubleClicked(0));
         }
         ImGui::PopID();
@@ -370,7 +370,7 @@ bool FileDialog::draw_name(Ui& ui) {
     const bool entered = ImGui::InputTextWithHint(
         "##name", ui.tr("file name"), name_.text, sizeof name_.text,
         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackAlways, select, this);
-    if (ImGui::IsItemEdited()) ask_replace_ = false;
+    if (ImGui::IsItemEdited()) ask_replace_ = false, fault_ = {};
     ui.mark("file name");
     return entered;
 }
@@ -414,6 +414,7 @@ std::optional<fs::path> FileDialog::draw(Ui& ui, Pictures& pictures) {
         ImGui::TextColored(
             ui.settings().theme == Theme::dark ? ImVec4(1, 0.62f, 0.45f, 1) : ImVec4(0.72f, 0.10f, 0.02f, 1), "%s",
             ui.fitted(why, ImGui::GetContentRegionAvail().x).c_str());
+        ui.mark("File fault");
     }
     const bool entered = draw_name(ui);
     ImGui::SameLine();
