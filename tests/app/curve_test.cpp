@@ -87,7 +87,9 @@ TEST_P(TiltedCurve, ItsInkIsOnIt) {
                    .tilt = {GetParam().first, GetParam().second}};
     stroke::TiltedTipLag tilted(preset);
     hand.holder.tip_lag = stroke::measure_tip_lag(preset, tilted);
-    hand.holder.tip_lag_change = [&tilted](double depth, const Vec2& lean) { return tilted.at(depth, lean); };
+    hand.holder.tip_lag_change = [&tilted](double depth, const Vec2& lean, double turn) {
+        return tilted.at(depth, lean, turn);
+    };
     const auto strokes = curve_poses(*model.query, points, hand);
     ASSERT_EQ(strokes.size(), 1u);
     stroke::PaintStroke stroke;

@@ -254,7 +254,9 @@ TEST(Sampling, AHolderIsNoFasterThanItsHandMakesIt) {
                     trace.samples.back().pressure = press[0] == 'a' ? 0.4 : 0;
                     HolderOptions options = holder_options(preset, flat);
                     options.tip_lag = measure_tip_lag(preset, tilted);
-                    options.tip_lag_change = [&](double depth, const Vec2& lean) { return tilted.at(depth, lean); };
+                    options.tip_lag_change = [&](double depth, const Vec2& lean, double turn) {
+                        return tilted.at(depth, lean, turn);
+                    };
                     expect_bounded(on_flat, trace, options, 0);
                     trace.placement = {{kCylinderRadius, 0, 0.01}, {0, 1, 0}, {0, 0, -1}, SurfaceMapping::drape};
                     expect_bounded(on_round, trace, options, 1 / kCylinderRadius);

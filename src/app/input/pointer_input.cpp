@@ -268,8 +268,12 @@ Vec3 PointerInput::ahead_of(const Aim& aim, const Vec3& normal, double pressure)
     const Vec2 ahead{glm::dot(dragged_.string, axes.right), glm::dot(dragged_.string, axes.down)};
     if (glm::length(ahead) < 1e-9) return Vec3(0);
     const Vec2 tilt = settings_.tilt + lean_of_make(aim, normal);
-    const Vec2 lag =
-        taut * stroke::tip_lag_at(holder_, pressure, {tilt.x, -tilt.y}, roll_at(aim), glm::normalize(ahead));
+    double roll = roll_at(aim);
+    // Hair falls over from its edge to its broad side as late as a make's lean follows.
+    if (const Vec2 late{glm::dot(leant_.string, axes.right), glm::dot(leant_.string, axes.down)};
+        holder_.turned && glm::length(late) > 1e-9)
+        roll += std::atan2(late.y, late.x) - std::atan2(ahead.y, ahead.x);
+    const Vec2 lag = taut * stroke::tip_lag_at(holder_, pressure, {tilt.x, -tilt.y}, roll, glm::normalize(ahead));
     const double spread = pressure * spread_ * (1 - smooth_step(gone_ / (kSpreadGone * holder_.tuft_length)));
     return lag.x * axes.right + lag.y * axes.down + spread * dragged_.string;
 }

@@ -51,7 +51,7 @@ struct Aim {
 /// Tip lag of one brush, for `stroke::tip_lag_at`: distance of the ink behind the holder. Empty: none.
 struct TipLag {
     std::vector<stroke::TipLag> upright;
-    std::function<Vec2(double depth, const Vec2& lean)> tilted = {};
+    std::function<Vec2(double depth, const Vec2& lean, double turn)> tilted = {};
 };
 
 /// Surface point that an aim hits.

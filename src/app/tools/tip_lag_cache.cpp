@@ -10,7 +10,7 @@ TipLag TipLagCache::find(const brush::Preset& preset) {
         upright_ = stroke::measure_tip_lag(preset, tilted_.emplace(preset));
         measured_ = std::move(content);
     }
-    return {upright_, [this](double depth, const Vec2& lean) { return tilted_->at(depth, lean); }};
+    return {upright_, [this](double depth, const Vec2& lean, double turn) { return tilted_->at(depth, lean, turn); }};
 }
 
 }  // namespace tuft::app

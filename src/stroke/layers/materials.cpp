@@ -67,8 +67,8 @@ HolderOptions Materials::holder(const std::string& name, const mesh::TriangleMes
         brush.tilted_tip_lag = std::move(tilted);
     }
     options.tip_lag = brush.tip_lag;
-    options.tip_lag_change = [tilted = brush.tilted_tip_lag.get()](double depth, const Vec2& lean) {
-        return tilted->at(depth, lean);
+    options.tip_lag_change = [tilted = brush.tilted_tip_lag.get()](double depth, const Vec2& lean, double turn) {
+        return tilted->at(depth, lean, turn);
     };
     return options;
 }

@@ -38,6 +38,10 @@ bool bends_across(const brush::Preset& preset) {
     return brush::has_broad_side(preset) && preset.lean > 0;
 }
 
+bool lags_by_turn(const brush::Preset& preset) {
+    return brush::has_broad_side(preset) && !bends_across(preset) && preset.slant == 0;
+}
+
 HolderOptions holder_options(const brush::Preset& preset) {
     return {.tuft_length = preset.length,
             .working_depth = working_depth(preset),
@@ -48,7 +52,8 @@ HolderOptions holder_options(const brush::Preset& preset) {
             .tip_lag_turn = std::min(preset.slant > 0 ? 0.4e-3 : HolderOptions{}.tip_lag_turn, 0.075 * preset.length),
             .blade_landing = preset.slant > 0 ? 0.4 * preset.length : 0,
             .lean = preset.lean,
-            .across = bends_across(preset)};
+            .across = bends_across(preset),
+            .turned = lags_by_turn(preset)};
 }
 
 HolderOptions holder_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh) {

@@ -87,9 +87,10 @@ struct HolderOptions {
     double max_tilt = 1.2;         ///< radians; larger tilts are clamped
     double steady = 0.008;         ///< radius of `level_surface`, metres; 0: no levelling
     std::vector<TipLag> tip_lag;   ///< ascending in depth, linear between, constant outside; empty: no tip lag
-    /// Change of the tip lag by a lean: metres ahead and to the path's left, for a depth (metres) and a lean along the
-    /// path and to its left (radians); `TiltedTipLag::at`. Empty: no change.
-    std::function<Vec2(double depth, const Vec2& lean)> tip_lag_change = {};
+    /// Change of the tip lag by a lean and a turn: metres ahead and to the path's left, for a depth (metres), a lean
+    /// along the path and to its left, and a turn of the ferrule's x from the path, anticlockwise (radians);
+    /// `TiltedTipLag::at`. Empty: no change.
+    std::function<Vec2(double depth, const Vec2& lean, double turn)> tip_lag_change = {};
     /// Metres of travel in which the tip lag follows a turn; less of a blade, which slips across its edge meanwhile.
     double tip_lag_turn = 0.0015;
     /// Metres of travel over which a blade, whose longest hair stands ahead of its axis, lands leaning ahead; 0: no
@@ -97,6 +98,7 @@ struct HolderOptions {
     double blade_landing = 0;
     double lean = 0;      ///< radians, `brush::Preset::lean`
     bool across = false;  ///< `bends_across`: lean and tip lag are across the broad side; false: along the path
+    bool turned = false;  ///< `lags_by_turn`: the tip lag differs on the edge and across the broad side
 };
 
 /// Returns the working depth of a brush, metres: half of the free hair.
@@ -105,6 +107,10 @@ double working_depth(const brush::Preset& preset);
 /// Whether hair of this brush bends across the broad side only, whichever way the path goes: of a wide ferrule whose
 /// make leans, such as a fan. Along its broad side a fan's hair has no steady place.
 bool bends_across(const brush::Preset& preset);
+
+/// Whether the tip lag of this brush differs by how its broad side lies to the path: of a wide ferrule that does not
+/// bend across alone. A blade, which is led along its broad side, has one tip lag.
+bool lags_by_turn(const brush::Preset& preset);
 
 /// Returns options for a brush over a model, `steady` its `drape_radius`, without tip lag.
 HolderOptions holder_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh);

@@ -13,14 +13,10 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr double kUpright = 0.05, kLeans = 0.15;  // radians
-constexpr double kOnGrid = 1e-9;                  // of a cell
-constexpr double kPlumb = 0.3;  // of the tuft's length, of travel over which an upright holder comes to its lean
-
-/// Of the ferrule from the path, radians, in steady strokes that the tip lag is measured on.
-double measured_roll(const brush::Preset& preset) {
-    return bends_across(preset) ? 0.5 * std::numbers::pi : 0;
-}
+constexpr double kLeansNot = 0.05, kLeans = 0.15;  // radians
+constexpr double kOnGrid = 1e-9;                   // of a cell
+constexpr double kFallsOver = 0.5;  // of the tuft's length, of travel in which hair follows a turn of a wide ferrule
+constexpr double kPlumb = 0.3;      // of the tuft's length, of travel over which an upright holder comes to its lean
 
 /// Where x lies between the grid's values, held to its ends.
 template <std::size_t N>
@@ -30,77 +26,6 @@ std::pair<std::size_t, double> cell_of(const std::array<double, N>& grid, double
     const double f = std::clamp((x - grid[i]) / (grid[i + 1] - grid[i]), 0.0, 1.0);
     return {i, f < kOnGrid ? 0 : f > 1 - kOnGrid ? 1 : f};  // a value of the grid needs no other
 }
-
-}  // namespace
-
-const std::vector<Vec2>& TiltedTipLag::node(std::size_t i, std::size_t j) {
-    const std::lock_guard lock(mutex_);
-    std::vector<Vec2>& tip_lags = nodes_[i * kAcross.size() + j];
-    if (tip_lags.empty()) {
-        std::vector<Vec2> measured(kDepths.size());
-        parallel_for(measured.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) {
-                const brush::LinePlace place = brush::line_place(preset_, kDepths[k] * working_depth(preset_),
-                                                                 {kAlong[i], kAcross[j]}, measured_roll(preset_));
-                measured[k] = {place.behind, -place.aside};
-            }
-        });
-        tip_lags = std::move(measured);
-    }
-    return tip_lags;
-}
-
-Vec2 TiltedTipLag::of_node(std::size_t i, std::size_t j, double depth) {
-    const double part = depth / working_depth(preset_);
-    if (part < kDepths[0]) return part / kDepths[0] * node(i, j)[0];
-    const auto [k, f] = cell_of(kDepths, part);
-    return glm::mix(node(i, j)[k], node(i, j)[k + 1], f);
-}
-
-Vec2 TiltedTipLag::of_lean(double depth, const Vec2& lean) {
-    const auto [i, f] = cell_of(kAlong, lean.x);
-    const auto [j, g] = cell_of(kAcross, std::abs(lean.y));
-    Vec2 sum{0};
-    for (const auto& [a, wa] : {std::pair{i, 1 - f}, std::pair{i + 1, f}})
-        for (const auto& [b, wb] : {std::pair{j, 1 - g}, std::pair{j + 1, g}})
-            if (wa * wb > 0) sum += wa * wb * of_node(a, b, depth);
-    // Leaning to the other side is the mirror image.
-    if (lean.y < 0) sum.y = -sum.y;
-    return sum;
-}
-
-Vec2 TiltedTipLag::at(double depth, const Vec2& lean) {
-    if (depth <= 0) return Vec2{0};
-    if (const Vec2 held{preset_.lean, 0}; bends_across(preset_)) {
-        const bool is_held = glm::distance(lean, held) < kOnGrid;
-        return is_held ? Vec2{0} : of_lean(depth, lean) - of_lean(depth, held);
-    }
-    const double part = smooth_step((glm::length(lean) - kUpright) / (kLeans - kUpright));
-    if (part <= 0) return Vec2{0};
-    return part * (of_lean(depth, lean) - of_lean(depth, Vec2{0}));
-}
-
-std::vector<TipLag> TiltedTipLag::as_held() {
-    std::vector<TipLag> tip_lag{{0, 0}};
-    for (const double part : kDepths) {
-        const double depth = part * working_depth(preset_);
-        tip_lag.push_back({depth, of_lean(depth, {preset_.lean, 0}).x});
-    }
-    return tip_lag;
-}
-
-std::vector<TipLag> measure_tip_lag(const brush::Preset& preset, TiltedTipLag& tilted) {
-    if (bends_across(preset)) return tilted.as_held();
-    std::vector<double> depths;
-    for (const double part : {0.05, 0.15, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0})
-        depths.push_back(part * working_depth(preset));
-    std::vector<TipLag> tip_lag{{0, 0}};
-    for (const brush::SweepRow& row : brush::sweep_depth(preset, depths))
-        tip_lag.push_back({row.depth, std::max(0.0, row.offset + 0.5 * row.width)});
-    return tip_lag;
-}
-
-namespace {
 
 double tip_lag_length(std::span<const TipLag> table, double depth) {
     if (table.empty()) return 0;
@@ -113,19 +38,120 @@ double tip_lag_length(std::span<const TipLag> table, double depth) {
     return table.back().length;
 }
 
+}  // namespace
+
+const std::vector<Vec2>& TiltedTipLag::node(std::size_t i, std::size_t j, std::size_t turn) {
+    const std::lock_guard lock(mutex_);
+    std::vector<Vec2>& tip_lags = nodes_[(turn * kAlong.size() + i) * kAcross.size() + j];
+    if (tip_lags.empty()) {
+        const double roll = glm::radians(kTurns[turn]);
+        std::vector<Vec2> measured(kDepths.size());
+        parallel_for(measured.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                const brush::LinePlace place =
+                    brush::line_place(preset_, kDepths[k] * working_depth(preset_), {kAlong[i], kAcross[j]}, roll);
+                measured[k] = {place.behind, -place.aside};
+            }
+        });
+        tip_lags = std::move(measured);
+    }
+    return tip_lags;
+}
+
+Vec2 TiltedTipLag::of_node(std::size_t i, std::size_t j, std::size_t turn, double depth) {
+    const double part = depth / working_depth(preset_);
+    const std::vector<Vec2>& tip_lags = node(i, j, turn);
+    if (part < kDepths[0]) return part / kDepths[0] * tip_lags[0];
+    const auto [k, f] = cell_of(kDepths, part);
+    return glm::mix(tip_lags[k], tip_lags[k + 1], f);
+}
+
+Vec2 TiltedTipLag::of_lean(double depth, const Vec2& lean, std::size_t turn) {
+    const auto [i, f] = cell_of(kAlong, lean.x);
+    const auto [j, g] = cell_of(kAcross, std::abs(lean.y));
+    Vec2 sum{0};
+    for (const auto& [a, wa] : {std::pair{i, 1 - f}, std::pair{i + 1, f}})
+        for (const auto& [b, wb] : {std::pair{j, 1 - g}, std::pair{j + 1, g}})
+            if (wa * wb > 0) sum += wa * wb * of_node(a, b, turn, depth);
+    // Leaning to the other side is the mirror image.
+    if (lean.y < 0) sum.y = -sum.y;
+    return sum;
+}
+
+Vec2 TiltedTipLag::change_by_lean(double depth, const Vec2& lean, std::size_t turn) {
+    const double part = smooth_step((glm::length(lean) - kLeansNot) / (kLeans - kLeansNot));
+    if (part <= 0) return Vec2{0};
+    return part * (of_lean(depth, lean, turn) - of_lean(depth, Vec2{0}, turn));
+}
+
+Vec2 TiltedTipLag::change_by_turn(double depth, double turn) {
+    const auto [k, f] = cell_of(kTurns, turn);
+    const Vec2 on_edge{tip_lag_length(as_held(), depth), 0};
+    Vec2 sum{0};
+    for (const auto& [t, w] : {std::pair{k, 1 - f}, std::pair{k + 1, f}})
+        if (w > 0 && t != kEdge) sum += w * (of_node(kUpright, 0, t, depth) - on_edge);
+    return sum;
+}
+
+Vec2 TiltedTipLag::at(double depth, const Vec2& lean, double turn) {
+    if (depth <= 0) return Vec2{0};
+    if (const Vec2 held{preset_.lean, 0}; bends_across(preset_)) {
+        const bool is_held = glm::distance(lean, held) < kOnGrid;
+        return is_held ? Vec2{0} : of_lean(depth, lean, kBroad) - of_lean(depth, held, kBroad);
+    }
+    if (!lags_by_turn(preset_)) return change_by_lean(depth, lean, kEdge);
+    // Turned to the other side is the mirror image.
+    const double folded = std::remainder(turn, std::numbers::pi), side = folded < 0 ? -1 : 1;
+    const double degrees = glm::degrees(std::abs(folded)), broad = smooth_step((degrees - kTurns[1]) / 35);
+    const Vec2 mirrored{lean.x, side * lean.y};
+    Vec2 sum = change_by_turn(depth, degrees);
+    if (broad < 1) sum += (1 - broad) * change_by_lean(depth, mirrored, kEdge);
+    if (broad > 0) sum += broad * change_by_lean(depth, mirrored, kBroad);
+    return {sum.x, side * sum.y};
+}
+
+const std::vector<TipLag>& TiltedTipLag::as_held() {
+    std::call_once(measured_, [&] {
+        as_held_ = {{0, 0}};
+        std::vector<double> depths;
+        if (bends_across(preset_)) {
+            for (const double part : kDepths) {
+                const double depth = part * working_depth(preset_);
+                as_held_.push_back({depth, of_lean(depth, {preset_.lean, 0}, kBroad).x});
+            }
+            return;
+        }
+        for (const double part : {0.05, 0.15, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0})
+            depths.push_back(part * working_depth(preset_));
+        // An edge is set down with its middle on the path.
+        const auto half = lags_by_turn(preset_) ? &brush::SweepRow::drag : &brush::SweepRow::width;
+        for (const brush::SweepRow& row : brush::sweep_depth(preset_, depths))
+            as_held_.push_back({row.depth, std::max(0.0, row.offset + 0.5 * row.*half)});
+    });
+    return as_held_;
+}
+
+std::vector<TipLag> measure_tip_lag(const brush::Preset&, TiltedTipLag& tilted) {
+    return tilted.as_held();
+}
+
+namespace {
+
 double depth_of(const HolderOptions& options, double pressure) {
     return std::clamp(pressure, 0.0, 1.0) * options.working_depth;
 }
 
-/// What a lean adds to the tip_lag, `along` the path; that is 1 long where the string is taut.
-Vec2 tilted_tip_lag(const HolderOptions& options, const Vec2& tilt, double depth, const Vec2& along) {
+/// What a lean and a turn add to the tip_lag, `along` the path; that is 1 long where the string is taut.
+Vec2 tilted_tip_lag(const HolderOptions& options, const Vec2& tilt, double roll, double depth, const Vec2& along) {
     const double taut = glm::length(along), lean = glm::length(tilt);
     // Across the broad side the lag without a change is that of a holder that leans as its make does.
-    if (taut < 1e-9 || (lean <= 0 && !options.across)) return Vec2{0};
+    if (taut < 1e-9 || (lean <= 0 && !options.across && !options.turned)) return Vec2{0};
     const Vec2 ahead = along / taut, left{ahead.y, -ahead.x};  // y of a trace is down
     const Vec2 held = lean > 0 ? tilt * (std::min(lean, options.max_tilt) / lean) : Vec2{0};
     const Vec2 up{std::tan(held.x), std::tan(held.y)};
-    const Vec2 more = options.tip_lag_change(depth, {std::atan(glm::dot(up, ahead)), std::atan(glm::dot(up, left))});
+    const double turn = roll - std::atan2(-ahead.y, ahead.x);
+    const Vec2 more =
+        options.tip_lag_change(depth, {std::atan(glm::dot(up, ahead)), std::atan(glm::dot(up, left))}, turn);
     return taut * (more.x * ahead + more.y * left);
 }
 
@@ -145,7 +171,7 @@ Vec2 tip_lag_at(const HolderOptions& options, double pressure, const Vec2& tilt,
     const double depth = depth_of(options, pressure);
     const Vec2 along = bent_along(options, roll, ahead);
     const Vec2 tip_lag = tip_lag_length(options.tip_lag, depth) * along;
-    return options.tip_lag_change ? tip_lag + tilted_tip_lag(options, tilt, depth, along) : tip_lag;
+    return options.tip_lag_change ? tip_lag + tilted_tip_lag(options, tilt, roll, depth, along) : tip_lag;
 }
 
 double lean_string(const HolderOptions& options) {
@@ -250,9 +276,29 @@ void set_down_plumb(StrokeSamples& trace, const HolderOptions& options) {
     for (std::size_t i = 0; i < trace.samples.size() && along < whole; ++i) {
         StrokeSample& s = trace.samples[i];
         if (i > 0) along += glm::length(s.position - trace.samples[i - 1].position);
-        const double meant = smooth_step((glm::length(s.tilt) - kUpright) / (kLeans - kUpright));
+        const double meant = smooth_step((glm::length(s.tilt) - kLeansNot) / (kLeans - kLeansNot));
         s.tilt *= std::lerp(smooth_step(along / whole), 1.0, meant);
     }
+}
+
+/// Turn of a wide ferrule from its path as its hair has followed it: hair falls over from its edge to its broad side,
+/// and back, while it is dragged by about its lag. With Δ what is left of the turn, mod π, and s the path's length,
+/// dΔ/ds = −Δ/λ.
+class FollowedTurn {
+  public:
+    FollowedTurn(double string, double turn) : string_(string), turn_(turn) {}
+    double follow(double turn, double gone) {
+        const double left = std::remainder(turn - turn_, std::numbers::pi);
+        return turn_ += left * -std::expm1(-gone / string_);
+    }
+
+  private:
+    double string_, turn_;
+};
+
+/// Of a direction of the path, anticlockwise, radians.
+double angle_of(const Vec2& ahead) {
+    return std::atan2(-ahead.y, ahead.x);
 }
 
 /// Direction in which a hand sets out; where its trace does not leave the first place, hair that bends across its broad
@@ -293,12 +339,15 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     const bool leans = options.lean > kLean && glm::dot(trace.samples.front().tilt, ahead) > kLean;
     if ((pressed || options.blade_landing > 0) && ahead != Vec2(0) && !leans) lean_ahead(trace, options, ahead);
     Vec2 dragged = first - options.tip_lag_turn * ahead, before = first;
+    FollowedTurn turn(kFallsOver * options.tuft_length, trace.samples.front().roll - angle_of(ahead));
     for (StrokeSample& s : trace.samples) {
         const Vec2 p(s.position);
         dragged = drag_string(dragged, before, p, options.tip_lag_turn);
+        const Vec2 towards = (p - dragged) / options.tip_lag_turn;
+        const double turned = turn.follow(s.roll - angle_of(towards), glm::distance(p, before));
+        const double roll = options.turned ? turned + angle_of(towards) : s.roll;
         before = p;
-        s.position = Vec3(p + tip_lag_at(options, s.pressure, s.tilt, s.roll, (p - dragged) / options.tip_lag_turn),
-                          s.position.z);
+        s.position = Vec3(p + tip_lag_at(options, s.pressure, s.tilt, roll, towards), s.position.z);
     }
     return trace;
 }

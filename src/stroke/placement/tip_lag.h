@@ -18,41 +18,52 @@
 /// compensated in the hand's samples. Called by `Materials` and `hand_path`.
 namespace tuft::stroke {
 
-/// Change of a brush's tip lag by a lean of the holder, measured on steady strokes at a grid of leans and depths. A
-/// node of the grid is measured at its first use: 25 ms, of a fan 1.5 s of computing, its depths side by side. Leans up
-/// to 0.05 rad change nothing, as a hand does not hold a brush more upright; from 0.15 rad on the change is full. Of a
-/// brush that `bends_across` every lean counts, from that of its make. Thread-safe.
+/// Change of a brush's tip lag by a lean of the holder and, of a brush that `lags_by_turn`, by the turn of its broad
+/// side from the path, measured on steady strokes at a grid of leans, turns and depths. A node of the grid is measured
+/// at its first use: 25 ms, of a flat 0.5 s, of a fan 1.5 s of computing, its depths side by side. Leans up to 0.05 rad
+/// change nothing, as a hand does not hold a brush more upright; from 0.15 rad on the change is full. Of a brush that
+/// `bends_across` every lean counts, from that of its make. Thread-safe.
+///
+/// An upright flat on its edge keeps its hair under it; turned by 20 degrees or more it lies down on its broad side and
+/// trails twice as far. What a lean adds is measured on the edge and across, and eased from one to the other.
 class TiltedTipLag {
   public:
     explicit TiltedTipLag(brush::Preset preset) : preset_(std::move(preset)) {}
 
     /// Returns the additional displacement of the hand, metres ahead along the path and to its left, that puts the line
     /// onto the path. `lean`: radians along the path and to its left, up ∝ normal + tan(lean.x) ahead + tan(lean.y)
-    /// left. `depth`: metres of the unbent tip below the surface.
-    Vec2 at(double depth, const Vec2& lean);
-    /// Returns the tip lag of a brush that `bends_across`, leaning as its make does; `at` is the change from that.
-    std::vector<TipLag> as_held();
+    /// left. `depth`: metres of the unbent tip below the surface. `turn`: radians of the ferrule's x from the path,
+    /// anticlockwise; both faces are alike.
+    Vec2 at(double depth, const Vec2& lean, double turn = 0);
+    /// Returns the tip lag that `at` is the change from: upright, the broad side along the path; of a brush that
+    /// `bends_across`, leaning as its make does, the broad side across.
+    const std::vector<TipLag>& as_held();
 
   private:
-    // Measured as by `measure_tip_lag`, with the broad side across the path or along it.
     static constexpr std::array kAlong{-0.8, -0.4, -0.2, 0.0, 0.2, 0.4, 0.8};
     static constexpr std::array kAcross{0.0, 0.4, 0.8};
+    static constexpr std::array kTurns{0.0, 10.0, 20.0, 45.0, 90.0};      // degrees; hair falls over at 10 to 20
     static constexpr std::array kDepths{0.05, 0.15, 0.3, 0.5, 0.7, 1.0};  // of the working depth
+    static constexpr std::size_t kEdge = 0, kBroad = kTurns.size() - 1, kUpright = 3;  // of `kTurns`; of `kAlong`
 
-    const std::vector<Vec2>& node(std::size_t i, std::size_t j);
-    Vec2 of_node(std::size_t i, std::size_t j, double depth);
-    Vec2 of_lean(double depth, const Vec2& lean);
+    const std::vector<Vec2>& node(std::size_t i, std::size_t j, std::size_t turn);
+    Vec2 of_node(std::size_t i, std::size_t j, std::size_t turn, double depth);
+    Vec2 of_lean(double depth, const Vec2& lean, std::size_t turn);
+    Vec2 change_by_lean(double depth, const Vec2& lean, std::size_t turn);
+    Vec2 change_by_turn(double depth, double turn);
 
     brush::Preset preset_;
     std::mutex mutex_;  // of `nodes_` while one is measured; measured ones do not change
-    std::array<std::vector<Vec2>, kAlong.size() * kAcross.size()> nodes_;  // ahead and left by depth
+    std::array<std::vector<Vec2>, kAlong.size() * kAcross.size() * kTurns.size()> nodes_;  // ahead and left by depth
+    std::once_flag measured_;
+    std::vector<TipLag> as_held_;
 };
 
 /// Measures the tip lag of a brush at depths up to its working depth: the distance from the foot of the holder's axis
 /// back to the widest place of the steady contact patch, which lies half a line's width behind its end
 /// (`brush::sweep_depth`). Of a brush that `bends_across` it is that of a holder that leans as its make does, with the
-/// broad side across the path (`TiltedTipLag::as_held` of `tilted`, which is of the same preset). Cost: about 50 ms; of
-/// a fan 1.5 s.
+/// broad side across the path. It is `TiltedTipLag::as_held` of `tilted`, which is of the same preset. Cost: about 50
+/// ms; of a fan 1.5 s.
 std::vector<TipLag> measure_tip_lag(const brush::Preset& preset, TiltedTipLag& tilted);
 
 /// Returns the tip lag at one point of a path, metres to the right and down. `tilt` and `roll`: radians, as in
@@ -94,7 +105,8 @@ inline constexpr double kHoverTime = 0.05;  ///< seconds of the tip between the 
 ///
 ///     |v_holder| ≤ (1 + tip_lag / tip_lag_turn + 2 κ L + 1.5) |v_path| + 4 (|depth'| + L |tilt'| + L |roll'|),
 ///
-/// with L the tuft's length; above the surface it is at most `hover / kHoverTime` faster than the hand.
+/// with L the tuft's length; of a brush that `lags_by_turn` 6 |v_path| more, as its hair falls over within L / 2. Above
+/// the surface it is at most `hover / kHoverTime` faster than the hand.
 StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& options);
 
 /// Adds samples after a trace that ends with pressure 0, in which the tip rises to `hover`. Other traces do not change.
