@@ -86,7 +86,8 @@ TEST(Knuckles, TheFitTakesASwellingOff) {
         for (const EdgeTurn& turn : knuckles_of(target.wanted, coverage, wanted)) sum += std::abs(turn.curvature);
         return sum;
     };
-    const FitResult taken = take_off_knuckles({.stations = stations}, target, depths, hand, {}, options);
+    stroke::PlaneDrawing drawing(hand.preset, hand.hold, options.fine_step * hand.unit, target.wanted.cell * hand.unit);
+    const FitResult taken = take_off_knuckles({.stations = stations}, target, depths, hand, {}, options, drawing);
     EXPECT_GT(sharpness_of(stations), kKnuckle);
     EXPECT_LT(sharpness_of(taken.stations), 0.8 * sharpness_of(stations));  // a fifth is more than ripples of the edge
     EXPECT_LE(taken.tries, options.knuckle_tries);

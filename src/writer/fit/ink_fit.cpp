@@ -237,16 +237,18 @@ stroke::PlaneInk draw_on_plane(std::span<const Station> stations, const BrushHan
 FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& target, const BrushHand& hand,
                        const Pace& pace, const FitOptions& options, const std::vector<Station>& other) {
     const std::vector<float> depths = depths_of(target.wanted);
-    const auto try_in = [&](double step, const std::vector<Station>& next, const std::vector<Station>& sides) {
-        check_interrupt();
-        const stroke::StrokeSamples trace = samples_of(next, hand, pace);
-        const stroke::PlaneInk ink =
-            stroke::plane_ink(trace, hand.preset, hand.hold, step * hand.unit, target.wanted.cell * hand.unit);
+    const auto judged = [&](const stroke::StrokeSamples& trace, const stroke::PlaneInk& ink,
+                            const std::vector<Station>& next, const std::vector<Station>& sides) {
         const std::vector<float> coverage = coverage_by(ink, target.wanted);
         return Try{score_of(target, depths, coverage), errors_of(next, sides, target, coverage, ink, trace, hand.unit)};
     };
     const auto try_out = [&](const std::vector<Station>& next, const std::vector<Station>& sides, int t) {
-        return try_in(t <= kRough ? kRougher * options.step : options.step, next, sides);
+        check_interrupt();
+        const double step = t <= kRough ? kRougher * options.step : options.step;
+        const stroke::StrokeSamples trace = samples_of(next, hand, pace);
+        return judged(
+            trace, stroke::plane_ink(trace, hand.preset, hand.hold, step * hand.unit, target.wanted.cell * hand.unit),
+            next, sides);
     };
     FitResult best{.stations = stations};
     const auto fit_from = [&](const std::vector<Station>& first, const Try& first_try, const Manner& manner) {
@@ -276,13 +278,16 @@ FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& ta
         for (const Manner& manner : kManners)
             if (&manner == kManners || best.iou < options.weak) fit_from(*begin, first_try, manner);
     }
-    best = take_off_knuckles(std::move(best), target, depths, hand, pace, options);
     // Ink depends on the step: in the steps of a painter it lies a unit beside that of the tries.
+    stroke::PlaneDrawing fine(hand.preset, hand.hold, options.fine_step * hand.unit, target.wanted.cell * hand.unit);
+    best = take_off_knuckles(std::move(best), target, depths, hand, pace, options, fine);
     const std::vector<Station> before_last = best.stations;
     const std::vector<double> soft = last_softness_of(before_last);
     std::vector<Station> next = before_last;
     for (int t = 1; t <= options.last_tries; ++t) {
-        const Try now = try_in(options.last_step, next, next);
+        check_interrupt();
+        const stroke::StrokeSamples trace = samples_of(next, hand, pace);
+        const Try now = judged(trace, fine.draw(trace), next, next);
         ++best.tries;
         if (t == 1 || now.reached.score > best.score)
             best.stations = next, best.iou = now.reached.iou, best.score = now.reached.score;

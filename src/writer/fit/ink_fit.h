@@ -24,12 +24,12 @@ struct FitTarget {
 struct FitOptions {
     int tries = kFitTries;  ///< drawings on the plane at most
     double step = 5;        ///< units between poses
-    double fine_step = 3;  ///< units, of the last drawings; ink depends on the step, by .005 of the overlap from 5 to 1
-    double weak = 0.955;   ///< overlap below which another manner and another begin are tried
-    int idle = 4;          ///< tries without a gain after which it stops
-    int last_tries = 2;    ///< drawings after those that take knuckles off; each but the first is corrected
-    double last_step = 2;  ///< units, of these
-    int knuckle_tries = 9;  ///< drawings at most, after those, in fine steps, that take knuckles off (knuckle_fit.h)
+    double weak = 0.955;    ///< overlap below which another manner and another begin are tried
+    int idle = 4;           ///< tries without a gain after which it stops
+    double fine_step =
+        2;  ///< units, of the drawings below; ink depends on the step, by .005 of the overlap from 5 to 1
+    int knuckle_tries = 7;  ///< drawings at most that take knuckles off (knuckle_fit.h)
+    int last_tries = 2;     ///< drawings after those; each but the first is corrected
 };
 
 /// Result of `fit_stations`.

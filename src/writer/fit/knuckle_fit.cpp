@@ -16,6 +16,7 @@ constexpr double kHead = 45;     // units from the first station within which a 
 constexpr double kSame = 30;     // units by which a knuckle moves when the path is changed, at most
 constexpr int kRounds = 3;       // over the knuckles of a stroke
 constexpr double kLeastGain = 5e-4;
+constexpr std::size_t kBeyond = 10;  // stations after a changed one from which ink is taken as that of the path before
 
 /// A path as it is drawn.
 struct Drawing {
@@ -28,21 +29,47 @@ struct Drawing {
 class KnuckleFit {
   public:
     KnuckleFit(const FitTarget& target, const std::vector<float>& depths, const BrushHand& hand, const Pace& pace,
-               const FitOptions& options)
+               const FitOptions& options, stroke::PlaneDrawing& drawing)
         : target_(target),
           depths_(depths),
           hand_(hand),
           pace_(pace),
           options_(options),
           turns_(edge_turns(target.wanted, coverage_of(target.wanted), 0.5 * kKnuckle)),
-          drawing_(hand.preset, hand.hold, options.fine_step * hand.unit, target.wanted.cell * hand.unit) {}
+          drawing_(drawing) {}
 
     Drawing draw(std::vector<Station> stations) {
         check_interrupt();
         ++draws_;
+        trace_ = samples_of(stations, hand_, pace_);
+        return judged(std::move(stations), drawing_.draw(trace_));
+    }
+
+    /// Draws a path that differs from the last one of `draw` or `finish` about the station `at`: as far as it differs.
+    Drawing draw_part(std::vector<Station> stations, std::size_t at) {
+        check_interrupt();
+        ++draws_;
+        part_ = samples_of(stations, hand_, pace_);
+        const std::size_t touch = part_.samples.size() - 1 - stations.size();  // samples before the first station
+        const std::size_t end = std::min(touch + at + kBeyond, part_.samples.size() - 1);
+        return judged(std::move(stations),
+                      drawing_.draw_part(part_, part_.samples[end].time, trace_.samples[end].time));
+    }
+
+    /// Draws the rest of the last path of `draw_part`.
+    Drawing finish(std::vector<Station> stations) {
+        trace_ = part_;
+        return judged(std::move(stations), drawing_.finish());
+    }
+
+    bool may_draw() const { return draws_ < options_.knuckle_tries; }
+    int draws() const { return draws_; }
+
+  private:
+    Drawing judged(std::vector<Station> stations, const stroke::PlaneInk& ink) const {
         Drawing out{.stations = std::move(stations)};
         const Cells& wanted = target_.wanted;
-        const std::vector<float> coverage = coverage_by(drawing_.draw(samples_of(out.stations, hand_, pace_)), wanted);
+        const std::vector<float> coverage = coverage_by(ink, wanted);
         out.reached = score_of(target_, depths_, coverage);
         out.value = out.reached.score;
         for (const EdgeTurn& turn : knuckles_of(wanted, coverage, turns_)) {
@@ -56,10 +83,6 @@ class KnuckleFit {
         return out;
     }
 
-    bool may_draw() const { return draws_ < options_.knuckle_tries; }
-    int draws() const { return draws_; }
-
-  private:
     bool is_under_another(const Vec2& p) const {
         const Cells& c = target_.wanted;
         const Vec2 cell = glm::floor((p - c.lo) / c.cell);
@@ -74,7 +97,8 @@ class KnuckleFit {
     const Pace& pace_;
     const FitOptions& options_;
     std::vector<EdgeTurn> turns_;
-    stroke::PlaneDrawing drawing_;
+    stroke::PlaneDrawing& drawing_;
+    stroke::StrokeSamples trace_, part_;  // of the last path drawn to its end, and of that of `draw_part`
     int draws_ = 0;
 };
 
@@ -108,17 +132,15 @@ std::vector<std::pair<std::size_t, Change>> changes_at(const std::vector<Station
     const bool neck = knuckle.curvature < 0;
     std::vector<std::pair<std::size_t, Change>> all;
     if (neck)
-        for (const Change& c : {Change{Vec2(0), 1.12}, Change{3.0 * out, 1}, Change{3.0 * out, 1.12}})
-            all.emplace_back(near, c);
+        for (const Change& c : {Change{Vec2(0), 1.12}, Change{3.0 * out, 1}}) all.emplace_back(near, c);
     else
         for (const Change& c : {Change{-3.0 * out, 1}, Change{Vec2(0), 0.88}, Change{Vec2(0), 1.12},
                                 Change{3.0 * out, 1}, Change{3.0 * out, 0.88}, Change{6.0 * out, 0.8}})
             all.emplace_back(near, c);
-    if (glm::distance(s[0].centre, knuckle.at) < kHead && s.size() > 4) {
+    if (!neck && glm::distance(s[0].centre, knuckle.at) < kHead && s.size() > 4) {
         const Vec2 on = unit_of(s[2].centre - s[0].centre), left(-on.y, on.x);
         for (const Vec2& shift : {4.0 * left, -4.0 * left, 4.0 * on, -4.0 * on}) all.push_back({0, {shift, 1}});
-        all.push_back({0, {Vec2(0), 1.3}});
-        if (!neck) all.push_back({0, {Vec2(0), 0.7}});
+        for (const double factor : {1.3, 0.7}) all.push_back({0, {Vec2(0), factor}});
     }
     return all;
 }
@@ -132,9 +154,10 @@ bool has_like(const std::vector<EdgeTurn>& knuckles, const EdgeTurn& one) {
 }  // namespace
 
 FitResult take_off_knuckles(FitResult fitted, const FitTarget& target, const std::vector<float>& depths,
-                            const BrushHand& hand, const Pace& pace, const FitOptions& options) {
+                            const BrushHand& hand, const Pace& pace, const FitOptions& options,
+                            stroke::PlaneDrawing& drawing) {
     if (options.knuckle_tries <= 0 || fitted.stations.size() < 4) return fitted;
-    KnuckleFit fit(target, depths, hand, pace, options);
+    KnuckleFit fit(target, depths, hand, pace, options, drawing);
     Drawing best = fit.draw(fitted.stations);
     for (int round = 0; round < kRounds && !best.knuckles.empty(); ++round) {
         const double before = best.value;
@@ -142,8 +165,13 @@ FitResult take_off_knuckles(FitResult fitted, const FitTarget& target, const std
         for (const EdgeTurn& knuckle : knuckles)
             for (const auto& [at, change] : changes_at(best.stations, knuckle)) {
                 if (!fit.may_draw() || !has_like(best.knuckles, knuckle)) break;
-                Drawing next = fit.draw(changed(best.stations, at, change));
-                if (next.value > best.value) best = std::move(next);
+                Drawing next = fit.draw_part(changed(best.stations, at, change), at);
+                if (!(next.value > best.value)) continue;
+                next = fit.finish(std::move(next.stations));
+                if (next.value > best.value)
+                    best = std::move(next);
+                else
+                    fit.draw(best.stations);
             }
         if (best.value < before + kLeastGain) break;
     }

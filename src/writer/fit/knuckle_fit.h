@@ -13,9 +13,12 @@ namespace tuft::writer {
 ///
 ///     score − 0.01 Σ |curvature| / kKnuckle  over the knuckles,
 ///
-/// `score` as in `fit_stations`. Knuckles under other strokes do not count. At most `options.knuckle_tries` drawings in
-/// steps of `options.fine_step`; one where the stroke has no knuckle. Deterministic.
+/// `score` as in `fit_stations`. Knuckles under other strokes do not count. At most `options.knuckle_tries` drawings
+/// with `drawing`; one where the stroke has no knuckle. A path is drawn as far as it differs from the one before
+/// (`PlaneDrawing::draw_part`), and to its end where that is better. The last trace that `drawing` has drawn to its end
+/// is that of the result. Deterministic.
 FitResult take_off_knuckles(FitResult fitted, const FitTarget& target, const std::vector<float>& depths,
-                            const BrushHand& hand, const Pace& pace, const FitOptions& options);
+                            const BrushHand& hand, const Pace& pace, const FitOptions& options,
+                            stroke::PlaneDrawing& drawing);
 
 }  // namespace tuft::writer
