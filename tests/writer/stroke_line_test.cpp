@@ -64,6 +64,55 @@ TEST(Sides, OfARectangleAreItsHalfWidth) {
     }
 }
 
+/// A line round the origin, anticlockwise from the top, units.
+StrokeLine round_line(double radius, double turn) {
+    std::vector<Vec2> points;
+    for (int i = 0; i <= 200; ++i) {
+        const double a = 0.5 * std::numbers::pi + turn * i / 200;
+        points.push_back(radius * Vec2(std::cos(a), std::sin(a)));
+    }
+    return make_stroke_line(points);
+}
+
+// Between knots a tenth of the line apart the chord of a ring of radius 250 lies 10 units inside of it. The area is
+// that of the ring to a twelfth of a unit along either edge, and no place of it is a cell farther off: 12² / 8 r is
+// 0.07.
+TEST(Sides, OfARoundStrokeBoundARingNotAPolygon) {
+    const double radius = 250, half = 20;
+    const StrokeLine line = round_line(radius, 5);
+    ASSERT_EQ(line.segments.size(), 1u);
+    StrokeSides sides;
+    sides.left.emplace_back(), sides.right.emplace_back();
+    sides.left[0].fill(half), sides.right[0].fill(half);
+    const std::vector<Ring> rings = area_of(line, sides);
+    for (std::size_t i = 0; i + 2 < rings.size(); ++i)  // without the fans
+        for (const Vec2& p : rings[i]) {
+            const double off = std::abs(glm::length(p) - radius);
+            EXPECT_NEAR(off, half, 1);
+        }
+    for (std::size_t i = 0; i + 2 < rings.size(); ++i) {
+        EXPECT_NEAR(glm::length(0.5 * (rings[i][0] + rings[i][3])), radius - half, 1);  // the left is inside
+        EXPECT_NEAR(glm::length(0.5 * (rings[i][1] + rings[i][2])), radius + half, 1);
+    }
+}
+
+TEST(Sides, OfARoundStrokeAreHalfAsWideUpwards) {
+    EXPECT_TRUE(is_round(round_line(250, 2.6)));
+    EXPECT_FALSE(is_round(round_line(250, 2.2)));  // as the hook of 心
+    const StrokeLine line = round_line(250, 6);
+    ASSERT_EQ(line.segments.size(), 1u);
+    const StrokeSides sides = round_sides(line);
+    const auto half_at = [&](double turned) {
+        std::size_t k = 0;
+        while (k + 1 < kKnots && kKnotPlaces[k] < turned / 6) ++k;
+        return sides.left[0][k];
+    };
+    EXPECT_EQ(sides.left, sides.right);
+    EXPECT_NEAR(half_at(0.5 * std::numbers::pi), 24,
+                1.1);  // down at the left; knots are 0.6 rad apart: 6 (1 − cos 0.6)
+    EXPECT_NEAR(half_at(1.5 * std::numbers::pi), 12, 1.1);  // up at the right
+}
+
 TEST(Clearances, OfADiscAreTheDistanceToItsEdge) {
     Ring ring;
     for (int i = 0; i < 720; ++i) {

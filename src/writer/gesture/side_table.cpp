@@ -24,7 +24,44 @@ std::size_t segments_of_key(const std::string& key) {
     return static_cast<std::size_t>(std::count_if(key.begin(), key.end(), [](char c) { return c != '-'; }));
 }
 
+constexpr double kRoundHalf = 24;        // units of half width of a round stroke downwards
+constexpr double kRoundTaper = 1.0 / 6;  // of its length: the tail
+constexpr double kRoundTip = 0.3;        // of the half width, that of the tip
+constexpr double kRoundHead = 30;        // units over which the head grows
+constexpr double kTurnReach = 16;        // units before and after a place, of its direction
+
 }  // namespace
+
+bool is_round(const StrokeLine& line) {
+    for (const LineSegment& s : line.segments) {
+        double turn = 0, least = 0, most = 0;
+        Vec2 before(0);
+        for (double at = line.along[s.first]; at <= line.along[s.last]; at += kTurnReach) {
+            const Vec2 d = line.direction(at, kTurnReach);
+            if (before != Vec2(0)) turn += std::atan2(before.x * d.y - before.y * d.x, glm::dot(before, d));
+            least = std::min(least, turn), most = std::max(most, turn), before = d;
+        }
+        if (most - least > kRoundTurn) return true;
+    }
+    return false;
+}
+
+StrokeSides round_sides(const StrokeLine& line) {
+    StrokeSides sides;
+    const auto half_at = [&](double at) {
+        const double head = std::clamp(0.7 + 0.3 * at / kRoundHead, 0.0, 1.0),
+                     tail = std::clamp((line.length() - at) / (kRoundTaper * line.length()), 0.0, 1.0);
+        return kRoundHalf * (3 - line.direction(at, kTurnReach).y) / 4 * head * std::lerp(kRoundTip, 1.0, tail);
+    };
+    for (const LineSegment& s : line.segments) {
+        sides.left.emplace_back();
+        for (std::size_t k = 0; k < kKnots; ++k)
+            sides.left.back()[k] = half_at(line.along[s.first] + kKnotPlaces[k] * s.length);
+    }
+    sides.right = sides.left;
+    sides.head.fill(half_at(0)), sides.tail.fill(half_at(line.length()));
+    return sides;
+}
 
 std::vector<double> row_of(const StrokeSides& sides) {
     std::vector<double> row;
@@ -129,6 +166,7 @@ SideTable SideTable::parse(std::string_view text, const std::string& source) {
 }
 
 StrokeSides SideTable::predict(const StrokeLine& line, const Glyph& glyph, std::size_t stroke) const {
+    if (is_round(line)) return round_sides(line);
     const std::size_t n = line.segments.size();
     const std::vector<double> features = stroke_features(line, glyph, stroke);
     StrokeSides sides;

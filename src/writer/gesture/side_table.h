@@ -35,7 +35,7 @@ class SideTable {
     static SideTable load(const std::filesystem::path& path);
     static SideTable parse(std::string_view text, const std::string& source);
 
-    /// Returns the predicted sides of a stroke, units, at least 1; fans at least 0.
+    /// Returns the predicted sides of a stroke, units, at least 1; fans at least 0. Of a round one `round_sides`.
     StrokeSides predict(const StrokeLine& line, const Glyph& glyph, std::size_t stroke) const;
     bool has(const std::string& stroke_class) const { return models_.contains(stroke_class); }
 
@@ -52,6 +52,20 @@ class SideTable {
   private:
     std::map<std::string, Model> models_;
 };
+
+inline constexpr double kRoundTurn = 2.4;  ///< radians
+
+/// Returns whether a segment of a line turns by more than `kRoundTurn` on its way, as strokes of kana do and none of
+/// regular script.
+bool is_round(const StrokeLine& line);
+
+/// Returns the sides of a round stroke, to which no table applies: half as wide upwards (y of the direction 1) as
+/// downwards,
+///
+///     half = 24 (3 − y) / 4 units,
+///
+/// with a blunt head and a tail that tapers over a sixth of the stroke.
+StrokeSides round_sides(const StrokeLine& line);
 
 /// Sides as one row: left and right of each segment, then the fans of head and tail.
 std::vector<double> row_of(const StrokeSides& sides);

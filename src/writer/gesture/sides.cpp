@@ -19,6 +19,7 @@ constexpr double kTangent = 12;       // units before and after, of the directio
 constexpr double kArm = 36;           // units from a corner at which the width of its arms is taken
 constexpr double kCornerReach = 32;   // units along the path that a corner is moved with
 constexpr double kMostPush = 45;      // units
+constexpr double kAreaStep = 12;      // units between places of an area: between knots a line may bend
 
 Vec2 turned(const Vec2& v, double angle) {
     return {std::cos(angle) * v.x - std::sin(angle) * v.y, std::sin(angle) * v.x + std::cos(angle) * v.y};
@@ -166,21 +167,35 @@ std::vector<Ring> area_of(const StrokeLine& line, const StrokeSides& sides) {
     std::vector<Ring> rings;
     Vec2 left_before{0}, right_before{0};
     Ring head, tail;
+    const auto add = [&](double at, double left_side, double right_side) {
+        const Vec2 p = line.at(at), normal = left_of(line.direction(at, kTangent));
+        const Vec2 left = p + left_side * normal, right = p - right_side * normal;
+        if (head.empty())
+            head = {p, right};
+        else
+            rings.push_back({left_before, right_before, right, left});
+        tail = {p, left};
+        left_before = left, right_before = right;
+    };
     for (std::size_t s = 0; s < line.segments.size(); ++s)
         for (std::size_t k = 0; k < kKnots; ++k) {
             const double at = knot_at(line, line.segments[s], k);
-            const Vec2 p = line.at(at), normal = left_of(line.direction(at, kTangent));
-            const Vec2 left = p + sides.left[s][k] * normal, right = p - sides.right[s][k] * normal;
-            if (s == 0 && k == 0) head = {p, right};
-            if (s > 0 || k > 0) rings.push_back({left_before, right_before, right, left});
-            if (s + 1 == line.segments.size() && k + 1 == kKnots) tail = {p, left};
-            left_before = left, right_before = right;
+            if (k > 0) {
+                const double before = knot_at(line, line.segments[s], k - 1);
+                const int n = static_cast<int>(std::ceil((at - before) / kAreaStep));
+                for (int i = 1; i < n; ++i) {
+                    const double f = static_cast<double>(i) / n;
+                    add(std::lerp(before, at, f), std::lerp(sides.left[s][k - 1], sides.left[s][k], f),
+                        std::lerp(sides.right[s][k - 1], sides.right[s][k], f));
+                }
+            }
+            add(at, sides.left[s][k], sides.right[s][k]);
             if (s == 0 && k == 0) {
                 const Vec2 back = -line.direction(0, kTangent);
                 // Anticlockwise of the direction back lies the right of the line.
                 for (std::size_t f = 0; f < kFan; ++f)
-                    head.push_back(p + sides.head[f] * turned(back, kFanDegrees[f] * kDegree));
-                head.push_back(left);
+                    head.push_back(line.points.front() + sides.head[f] * turned(back, kFanDegrees[f] * kDegree));
+                head.push_back(left_before);
             }
         }
     const Vec2 end = line.points.back(), on = line.direction(line.length(), kTangent);

@@ -29,7 +29,8 @@ struct StrokeSides {
 /// lies outside. Cost: knots × points of the outline.
 StrokeSides measure_sides(const StrokeLine& line, std::span<const Ring> outline);
 
-/// Returns the area between the sides: quads between knots and the two fans, each a ring.
+/// Returns the area between the sides, linear along the line between knots: quads of at most 12 units and the two fans,
+/// each a ring.
 std::vector<Ring> area_of(const StrokeLine& line, const StrokeSides& sides);
 
 /// A place of the path of a brush and the half width of its ink there.
