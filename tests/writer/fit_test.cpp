@@ -77,6 +77,25 @@ TEST(Writer, InkCoversThePredictedArea) {
     }
 }
 
+// 橫鉤 as a pen draws it: the typeface's hook is three times as wide along its bisector as the bar. The cap is exact.
+TEST(Writer, AHookOfAPensLineIsNoBall) {
+    const SideTable table = SideTable::load(data_folder() / "models" / "writer" / "sides.txt");
+    Glyph glyph{.code = U'x'};
+    glyph.strokes.push_back({.median = {{150, 600}, {820, 650}, {850, 640}, {800, 560}}});
+    const StrokeLine line = make_stroke_line(glyph.strokes[0].median);
+    const auto widest = [&](bool of_pen) {
+        glyph.of_pen = of_pen;
+        const StrokeSides sides = table.predict(line, glyph, 0);
+        std::vector<double> all;
+        for (const auto* side : {&sides.left, &sides.right})
+            for (const auto& row : *side) all.insert(all.end(), row.begin(), row.end());
+        std::sort(all.begin(), all.end());
+        return all.back() - (1.25 * all[all.size() / 2] + 8);
+    };
+    EXPECT_GT(widest(false), 8);
+    EXPECT_LE(widest(true), 1e-9);
+}
+
 /// Width across of the ink of a level line of half width 20, `inside` units from the first ink of its head, units.
 double width_of_head(const BrushHand& hand, const Pace& pace, double inside) {
     std::vector<Station> line;

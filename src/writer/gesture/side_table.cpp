@@ -14,6 +14,7 @@ constexpr std::size_t kMostBytes = std::size_t{8} << 20, kMostOutputs = 4096, kM
 constexpr double kScale = 0.001;  // of the file's whole numbers
 constexpr double kClip = 4;       // standard deviations that a feature counts at most
 constexpr std::size_t kFans = 2 * kFan;
+constexpr double kMostPredicted = 130;  // units of a side
 
 /// Key of the model of a segment of a class that has none: its code, and a dash where the stroke goes on.
 std::string segment_key(char code, bool first, bool last) {
@@ -24,11 +25,12 @@ std::size_t segments_of_key(const std::string& key) {
     return static_cast<std::size_t>(std::count_if(key.begin(), key.end(), [](char c) { return c != '-'; }));
 }
 
-constexpr double kRoundHalf = 24;        // units of half width of a round stroke downwards
-constexpr double kRoundTaper = 1.0 / 6;  // of its length: the tail
-constexpr double kRoundTip = 0.3;        // of the half width, that of the tip
-constexpr double kRoundHead = 30;        // units over which the head grows
-constexpr double kTurnReach = 16;        // units before and after a place, of its direction
+constexpr double kPenWidest = 1.25, kPenWider = 8;  // of the median side, and units, that a side counts of a pen's line
+constexpr double kRoundHalf = 24;                   // units of half width of a round stroke downwards
+constexpr double kRoundTaper = 1.0 / 6;             // of its length: the tail
+constexpr double kRoundTip = 0.3;                   // of the half width, that of the tip
+constexpr double kRoundHead = 30;                   // units over which the head grows
+constexpr double kTurnReach = 16;                   // units before and after a place, of its direction
 
 }  // namespace
 
@@ -188,9 +190,18 @@ StrokeSides SideTable::predict(const StrokeLine& line, const Glyph& glyph, std::
             for (auto* side : {&sides.left, &sides.right})
                 (*side)[s][0] = (*side)[s - 1][kKnots - 1] = 0.5 * ((*side)[s][0] + (*side)[s - 1][kKnots - 1]);
     }
+    double widest = kMostPredicted;
+    if (glyph.of_pen) {
+        std::vector<double> all;
+        for (const auto* side : {&sides.left, &sides.right})
+            for (const auto& row : *side) all.insert(all.end(), row.begin(), row.end());
+        const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+        std::nth_element(all.begin(), middle, all.end());
+        widest = std::clamp(kPenWidest * *middle + kPenWider, 1.0, kMostPredicted);
+    }
     for (auto* side : {&sides.left, &sides.right})
         for (auto& row : *side)
-            for (double& v : row) v = std::clamp(v, 1.0, 130.0);
+            for (double& v : row) v = std::clamp(v, 1.0, widest);
     for (auto* fan : {&sides.head, &sides.tail})
         for (double& v : *fan) v = std::clamp(v, 0.0, 70.0);
     return sides;

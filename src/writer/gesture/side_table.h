@@ -36,6 +36,8 @@ class SideTable {
     static SideTable parse(std::string_view text, const std::string& source);
 
     /// Returns the predicted sides of a stroke, units, at least 1; fans at least 0. Of a round one `round_sides`.
+    /// Where the line is of a pen (`Glyph::of_pen`), a side is at most 5/4 of the stroke's median one and 8 units:
+    /// those at corners and hooks, along the bisector of a typeface's line, would become balls.
     StrokeSides predict(const StrokeLine& line, const Glyph& glyph, std::size_t stroke) const;
     bool has(const std::string& stroke_class) const { return models_.contains(stroke_class); }
 

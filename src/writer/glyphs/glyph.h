@@ -34,6 +34,7 @@ struct Glyph {
     double after = 0;                  ///< units of space after these, as between Han characters and Latin letters
     bool sideways = false;             ///< turned clockwise by a quarter, to stand in a column
     bool single_line = false;          ///< of a single-line font: an even pen line, without classes
+    bool of_pen = false;  ///< centre lines of a pen, as in KanjiVG: their corners and hooks tell nothing of a width
 };
 
 /// Replaces every point p of a glyph by `to`(p).

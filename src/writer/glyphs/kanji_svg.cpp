@@ -69,6 +69,7 @@ Glyph parse_kanji_svg(std::string_view text, char32_t code, const std::string& s
         throw Error(source, Message("no SVG: {}", library_fault(parsed.description())));
     if (!document.child("svg")) throw Error(source, Message("it has no svg element"));
     Glyph glyph{.code = code};
+    glyph.of_pen = true;
     Reader(source, glyph).walk(document.child("svg"), 0);
     if (glyph.strokes.empty()) throw Error(source, Message("it has no strokes"));
     check_glyph(glyph, source);
