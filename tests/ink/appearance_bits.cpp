@@ -5,16 +5,15 @@
 #include "core/hash.h"
 #include "core/random.h"
 #include "ink/composite/composite.h"
+#include "instructions.h"
 
-int main() {
+int main(int n_arguments, char** arguments) {
     using namespace tuft;
     using namespace tuft::ink;
-#ifdef APPEARANCE_BITS_NEEDS
-    if (!__builtin_cpu_supports(APPEARANCE_BITS_NEEDS)) {
+    if (n_arguments > 1 && !tuft::test::has_instructions(arguments[1])) {
         std::puts("skipped");
         return 0;
     }
-#endif
     std::uint64_t hash = 0;
     std::vector<Pigment> pigments;
     for (int p = 0; p < 4; ++p) {

@@ -9,6 +9,7 @@
 #include "ink/film/seepage.h"
 #include "ink/film/tension.h"
 #include "ink/film/tile/film_tile.h"
+#include "instructions.h"
 
 namespace {
 
@@ -120,13 +121,11 @@ void fill(Geometry& g, std::uint64_t seed) {
 
 }  // namespace
 
-int main() {
-#ifdef FILM_BITS_NEEDS
-    if (!__builtin_cpu_supports(FILM_BITS_NEEDS)) {
+int main(int n_arguments, char** arguments) {
+    if (n_arguments > 1 && !tuft::test::has_instructions(arguments[1])) {
         std::puts("skipped");
         return 0;
     }
-#endif
     std::uint64_t hash = 0;
     const auto add = [&](const auto& a) { hash = hash_bytes(a.data(), sizeof a[0] * a.size(), hash); };
     for (std::uint64_t round = 0; round < 32; ++round) {

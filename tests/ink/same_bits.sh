@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# same_bits.sh PROGRAM...: all programs print the same line; those that cannot run here print "skipped".
+# same_bits.sh PROGRAM...: all programs print the same line; those that cannot run here print "skipped". A program is told
+# the end of its name, which is its level of x86-64.
 set -euo pipefail
 seen=""
 for program in "$@"; do
-  line=$("$program")
+  line=$("$program" "${program##*_}")
   [ "$line" = skipped ] && { echo "$(basename "$program") skipped: the processor lacks its instructions"; continue; }
   echo "$(basename "$program") $line"
   [ -z "$seen" ] && seen=$line
