@@ -7,8 +7,10 @@ packages_build=(build-essential cmake ninja-build pkg-config git ccache gettext
   libzstd-dev libpng-dev zlib1g-dev libxxhash-dev libpugixml-dev libfontconfig-dev libfreetype-dev libharfbuzz-dev libassimp-dev libocct-data-exchange-dev libdraco-dev libmeshoptimizer-dev libpodofo-dev libpolyclipping-dev libtomlplusplus-dev libcli11-dev libfmt-dev
   nlohmann-json3-dev libstb-dev libbenchmark-dev
   libglfw3-dev libxrandr-dev libxi-dev libimgui-dev libepoxy-dev libgl-dev libegl-dev libspnav-dev)
-packages_test=(poppler-utils slurm-wlm munge parallel occt-misc gmsh-doc netgen-doc liborocos-kdl-dev ffmpeg imagemagick lib3mf1 clang-format doxygen mandoc zsh appstream desktop-file-utils
-  libgtest-dev libgmock-dev xvfb xauth xdotool libgl1-mesa-dri libegl1
+# What the tests are configured and compiled with, and what they only run.
+packages_test=(libgtest-dev libgmock-dev liborocos-kdl-dev clang-format doxygen)
+packages_run=(poppler-utils slurm-wlm munge parallel occt-misc gmsh-doc netgen-doc ffmpeg imagemagick lib3mf1 mandoc zsh appstream desktop-file-utils
+  xvfb xauth xdotool libgl1-mesa-dri libegl1
   xserver-xorg-core xserver-xorg-video-dummy xserver-xorg-input-wacom umockdev)
 
 say() { printf '\n== %s\n' "$*" >&2; }

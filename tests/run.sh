@@ -4,14 +4,20 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 . .ci/setup.sh
 install_missing "${packages_build[@]}" "${packages_test[@]}"
-# The Khronos glTF validator; the tests that need it say so and are skipped without it.
-if command -v npm >/dev/null && [ ! -d build/node/node_modules/gltf-validator ]; then
-  mkdir -p build/node
-  npm install --silent --no-fund --no-audit --prefix build/node gltf-validator@2.0.0-dev.3.10 >/dev/null 2>&1 ||
-    say "the glTF validator could not be installed; its test will be skipped"
-fi
+# What the tests only run is fetched while the programs are compiled.
+{
+  install_missing "${packages_run[@]}"
+  # The Khronos glTF validator; the tests that need it say so and are skipped without it.
+  if command -v npm >/dev/null && [ ! -d build/node/node_modules/gltf-validator ]; then
+    mkdir -p build/node
+    npm install --silent --no-fund --no-audit --prefix build/node gltf-validator@2.0.0-dev.3.10 >/dev/null 2>&1 ||
+      say "the glTF validator could not be installed; its test will be skipped"
+  fi
+} &
+installing=$!
 cmake_options=(-DTUFT_TESTS=ON)
-build all
+build all || { wait; exit 1; }
+wait "$installing"
 say "testing"
 tests_at_once=$(( $(nproc) + 1 ))  # some of them wait for a window or a server
 if [ $# -gt 0 ]; then
