@@ -81,7 +81,7 @@ oiiotool "$out/plum-blue.png" "$out/plum.png" --create 1480x740 3 --paste +0+0 -
 # By brushes of trades: petals of two inks, bamboo by a flat, blue-and-white, a sword's pinstripe.
 paint one-stroke plate one-stroke "" --view 0,70 --zoom 2 --size 740x460
 paint flat-bamboo sheet flat-bamboo "--substrate rice-paper" --view 0,89 --size 740x460 --zoom 1.3
-paint blue-and-white vase blue-and-white "--film wet --dry 0" --view 0,4 --size 740x460 --zoom 2.6 --target 0,-60,115
+paint blue-and-white vase blue-and-white "--film wet --dry 0" --view 0,4 --size 740x460 --zoom 1.8 --target 0,-60,111
 paint car-sword car car-sword "--substrate clay" --view 10,8 --size 740x460
 oiiotool "$out/car-sword.png" "$out/blue-and-white.png" "$out/flat-bamboo.png" "$out/one-stroke.png" --create 1480x920 3 \
   --paste +0+0 --paste +740+0 --paste +0+460 --paste +740+460 -d uint8 -o "$out/trades.png"

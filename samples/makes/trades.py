@@ -95,101 +95,6 @@ def grass():
     return [({"brush": "fan-30", "ink": "indigo", **place}, strokes)]
 
 
-PEONY = [  # outlines of petals round (0, 0): a closed run of keys, mm
-    [(0, 2), (-8, -3), (-12, -13), (-5, -19), (0, -15), (5, -19), (12, -13), (8, -3), (0, 2)],
-    [(-7, -2), (-18, -8), (-26, -4), (-27, 5), (-20, 10), (-11, 7), (-3, 3)],
-    [(7, -2), (18, -8), (26, -4), (27, 5), (20, 10), (11, 7), (3, 3)],
-    [(-9, 8), (-16, 16), (-12, 24), (-3, 24), (0, 19), (1, 9)],
-    [(9, 8), (16, 16), (12, 24), (3, 24), (0, 19), (-1, 9)]]
-LEAVES = [[(-28, 8), (-38, 6), (-50, 14), (-40, 20), (-30, 17), (-24, 11)], [(28, 8), (38, 4), (51, 10), (42, 18), (31, 17),
-          (24, 11)], [(-10, -18), (-18, -26), (-17, -38), (-7, -34), (-4, -24), (-5, -20)]]
-
-
-def dense(keys):
-    """Points of the outline that `Stroke.curve` draws through the keys."""
-    return [p[:2] for p in Stroke("").curve([(*k, 0, 0) for k in keys], 22).points]
-
-
-def inside(polygon, x, y):
-    """The distance of a place to a polygon, mm; less than 0 outside."""
-    odd, nearest = False, math.inf
-    for (ax, ay), (bx, by) in zip(polygon, polygon[1:] + polygon[:1]):
-        if (ay > y) != (by > y) and x < ax + (y - ay) / (by - ay) * (bx - ax):
-            odd = not odd
-        dx, dy = bx - ax, by - ay
-        f = min(1, max(0, ((x - ax) * dx + (y - ay) * dy) / max(dx * dx + dy * dy, 1e-12)))
-        nearest = min(nearest, math.dist((x, y), (ax + f * dx, ay + f * dy)))
-    return nearest if odd else -nearest
-
-
-STEP = 2.0  # mm between keys of a path along a rim
-
-
-def along_the_rim(polygon, margin):
-    """A closed path `margin` inside a polygon; where it is narrower, no path."""
-    area = sum(ax * by - bx * ay for (ax, ay), (bx, by) in zip(polygon, polygon[1:] + polygon[:1]))
-    path = []
-    for (ax, ay), (bx, by) in zip(polygon, polygon[1:] + polygon[:1]):
-        length = math.dist((ax, ay), (bx, by))
-        if length < 1e-9:
-            continue
-        out = math.copysign(margin / length, area)
-        x, y = 0.5 * (ax + bx) - out * (by - ay), 0.5 * (ay + by) + out * (bx - ax)
-        if inside(polygon, x, y) >= 0.98 * margin and (not path or math.dist(path[-1], (x, y)) >= STEP):
-            path.append((x, y))
-    return path + path[:1]
-
-
-def fill(polygon, turn, margin, spacing):
-    """A path round the rim of the places at least `margin` inside, then to and fro over them, in rows turned by `turn`
-    degrees: the ends of rows alone leave an edge of scallops."""
-    c, s = math.cos(math.radians(turn)), math.sin(math.radians(turn))
-    across = [s * x - c * y for x, y in polygon]
-    along = [c * x + s * y for x, y in polygon]
-    path = along_the_rim(polygon, margin)
-    margin += 0.5 * spacing  # the brush swings out where it turns
-    rows = max(1, round((max(across) - min(across) - 2 * margin) / spacing))
-    for row in range(rows + 1):
-        v = min(across) + margin + (max(across) - min(across) - 2 * margin) * row / rows
-        best, run = [], []
-        u = min(along)
-        while u <= max(along):
-            x, y = c * u + s * v, s * u - c * v
-            run = run + [(x, y)] if inside(polygon, x, y) >= margin else []
-            best = run if len(run) > len(best) else best
-            u += 0.25
-        if best:
-            path += [best[0], best[-1]] if row % 2 == 0 else [best[-1], best[0]]
-    return path
-
-
-def blue_and_white():
-    """Outlines by a liner, each filled with a wash inside them."""
-    place = {"origin": "0 -66.7 118", "right": "1 0 0", "down": "0 0 -1", "mapping": "wrap"}
-    lines, veins, washes, small = [], [], [], []
-    for outline in PEONY + LEAVES:
-        keys = [(x, y, 0.16 if 0 < i < len(outline) - 1 else 0.05, 0) for i, (x, y) in enumerate(outline)]
-        lines.append(Stroke("outline").curve([(*outline[0], 0, 0)] + keys[1:-1] + [(*outline[-1], 0, 0)], 22))
-        middle = [sum(p[i] for p in outline) / len(outline) for i in (0, 1)]
-        leaf = outline in LEAVES
-        start = outline[2 if leaf else 0]
-        far = outline[-1] if leaf else outline[len(outline) // 2]
-        press, margin, spacing = (0.2, 0.7, 0.7) if leaf else (0.24, 1.2, 1.1)
-        turn = math.degrees(math.atan2(far[1] - start[1], far[0] - start[0]))
-        path = fill(dense(outline), turn, margin, spacing)
-        (small if leaf else washes).append(Stroke("wash").go(
-            [(*path[0], 0, 0)] + [(*p, press, 0) for p in path] + [(*path[-1], 0, 0)], 30))
-        if leaf:
-            veins.append(Stroke("vein").curve([(*far, 0, 0), (*middle, 0.1, 0), (*start, 0, 0)], 24))
-    stem = Stroke("stem").curve([(-1, 24, 0, 0), (-1, 26, 0.2, 0), (3, 40, 0.22, 0), (-4, 58, 0.2, 0), (-3, 60, 0, 0)], 24)
-    dry = care("dry")
-    for s in washes[:1]:
-        s.before = dry
-    return [({"brush": "liner-3", "ink": "cobalt", **place}, lines + veins + [stem]),
-            ({"brush": "wash-12*0.6", "ink": "samples/inks/cobalt-wash.toml", **place}, washes),
-            ({"brush": "wash-12*0.35", "ink": "samples/inks/cobalt-wash.toml", **place}, small)]
-
-
 STRIPE = [(470, 170), (430, 181), (400, 187), (345, 193), (285, 188), (225, 181), (150, 177), (50, 178), (-50, 180), (-150, 185),
           (-250, 193), (-345, 200), (-420, 196), (-480, 184), (-530, 168)]
 
@@ -241,7 +146,6 @@ def main():
     folder = pathlib.Path(sys.argv[1])
     for name, title, groups in (("one-stroke", "Petals and leaves by one press", one_stroke()),
                                 ("flat-bamboo", "Bamboo by a flat", bamboo()), ("fan-grass", "Grass by a fan", grass()),
-                                ("blue-and-white", "Outlines and washes", blue_and_white()),
                                 ("car-sword", "A pinstripe and a scroll by a sword", sword())):
         write(folder / f"{name}.inkml", title, groups)
 

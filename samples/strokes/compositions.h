@@ -25,6 +25,8 @@ std::vector<stroke::RecordedStroke> backrun();
 std::vector<stroke::RecordedStroke> wet_vase();
 /// A plum branch in blossom, a rock and bamboo on the belly of the vase, in eight pigments.
 std::vector<stroke::RecordedStroke> vase_plum();
+/// A peony in underglaze blue on the belly of the vase, outlines and washes.
+std::vector<stroke::RecordedStroke> blue_and_white();
 /// A flower of thick paint on thick paint, on the flat sheet.
 std::vector<stroke::RecordedStroke> impasto();
 /// Pinstripes along the right flank of the car.

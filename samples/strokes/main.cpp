@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
         save("backrun.inkml", "Water into a half-dry wash", samples::backrun());
         save("wet-vase.inkml", "Ink that runs down", samples::wet_vase());
         save("vase-plum.inkml", "Plum blossom", samples::vase_plum());
+        save("blue-and-white.inkml", "A peony in underglaze blue", samples::blue_and_white());
         save("impasto.inkml", "Thick paint", samples::impasto());
         save("car-pinstripe.inkml", "Pinstripes", samples::car_pinstripe());
     } catch (const Error& e) {
