@@ -262,7 +262,9 @@ Cut cut_between(const Cut& p, const Cut& q, double f) {
             std::lerp(p.b, q.b, f),
             unit(glm::mix(p.e, q.e, f), p.e),
             unit(glm::mix(p.m, q.m, f), p.m),
-            glm::dot(turn, turn) > 1e-6 ? glm::normalize(turn) : p.turn};
+            glm::dot(turn, turn) > 1e-6 ? glm::normalize(turn) : p.turn,
+            glm::mix(p.slant, q.slant, f),
+            glm::mix(p.bow, q.bow, f)};
 }
 
 Recycled<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<const brush::ContactPlane> planes) {

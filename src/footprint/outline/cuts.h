@@ -22,6 +22,9 @@ struct Cut {
     Vec3 e{1, 0, 0};      ///< unit axes: (u, v, height)
     Vec3 m{0, 0, 1};
     Vec2 turn{1, 0};  ///< where a strip's broad side is, see brush::Section
+    /// Metres, (u, v), along the hair: by how much a strip between spines of other lengths goes aslant and bends to its
+    /// edges, see `bent`.
+    Vec2 slant{0}, bow{0};
 
     double half_height() const { return std::sqrt(a * a * e.z * e.z + b * b * m.z * m.z); }
     double overlap() const { return half_height() - z; }
@@ -31,6 +34,15 @@ struct Cut {
     /// centre + x broad + y thick.
     Vec3 broad() const { return turn.x * (a * e) + turn.y * (b * m); }
     Vec3 thick() const { return turn.x * (b * m) - turn.y * (a * e); }
+    /// How far along the hair the place x of a strip's section lies from its broad axis: s slant + (1 − s²) bow, where
+    /// s is −1 and 1 at its edges.
+    Vec2 bent(double x) const {
+        const double s = std::clamp(x / kStripChord, -1.0, 1.0);
+        return s * slant + (1 - s * s) * bow;
+    }
+    bool is_bent() const { return slant != Vec2{0} || bow != Vec2{0}; }
+
+    static constexpr double kStripChord = 0.8862269254527580;  ///< √π/2, see brush::in_branch
 };
 
 /// The section at the part f of the way between two, linear in all that it has.
@@ -57,7 +69,7 @@ struct Trail {
     /// Half the thickness of the hair at x in [−1, 1] of a section, over b.
     double chord(double x) const { return strip ? kStripChord : std::sqrt(std::max(0.0, 1 - x * x)); }
 
-    static constexpr double kStripChord = 0.8862269254527580;  ///< √π/2, see brush::in_branch
+    static constexpr double kStripChord = Cut::kStripChord;
 };
 
 /// Part of a trail.
@@ -106,7 +118,8 @@ void gather_trails(Recycled<Trail>& trails, double part);
 /// area: hair that is set between two spines lies between them, X = (F_k + F_{k+1}) / 2 at its edge, at equal parts of
 /// what touches. A section turned by half a turn is spread as the same hair is. A row that stands aslant to its hair so
 /// keeps one edge. To three times their width at most. Spines that differ in length widen only, along their own broad
-/// sides.
+/// sides. Along the hair the ends of the strips lie on the quadratic B-spline of the spines: from midway
+/// to midway, M₋, F_k, M₊ the control points of each, so that the toe of a filbert is one smooth curve.
 void fill_rows(Recycled<Trail>& trails);
 
 /// Adds the upright hair round the foot of the axis, by `foot.share`: a straight taper from the widest section to

@@ -217,7 +217,7 @@ Vec2 point_on_surface(const Trail& trail, const Cut& cut, double x, double chord
     const double need = cut.z + (trail.strip ? x * cut.broad().z : cut.a * x * cut.e.z);
     const double meets = std::abs(height) > 1e-9 ? std::clamp(-need / height, -chord, chord) : 0;
     const double y = need < -chord * std::abs(height) ? 0 : meets;
-    return trail.strip ? cut.centre + x * Vec2(cut.broad()) + y * Vec2(cut.thick()) : cut.at(x, y);
+    return trail.strip ? cut.centre + cut.bent(x) + x * Vec2(cut.broad()) + y * Vec2(cut.thick()) : cut.at(x, y);
 }
 
 /// Picture into which strands are drawn.

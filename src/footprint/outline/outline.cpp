@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kDirections = 24;  // points of a whole section's shadow
+constexpr int kBentPieces = 6;   // of each broad side of a strip that bends
 
 /// Cosines and sines of evenly spaced directions.
 struct Directions {
@@ -81,13 +82,20 @@ void add_strip_shadow(const Cut& cut, std::span<const Vec2> strip, Recycled<Vec2
     for (const Vec2& c : strip) reach = std::max(reach, -(c.x * broad.z + c.y * thick.z));
     const double half = cut.half_height(), z = half > 0 ? cut.z * reach / half : cut.z;
     const auto height = [&](const Vec2& c) { return z + c.x * broad.z + c.y * thick.z; };
-    const auto point = [&](const Vec2& c) { return cut.centre + c.x * Vec2(broad) + c.y * Vec2(thick); };
+    const auto point = [&](const Vec2& c) {
+        return cut.centre + cut.bent(c.x) + c.x * Vec2(broad) + c.y * Vec2(thick);
+    };
     const std::size_t before = corners.size();
+    const int pieces = cut.is_bent() ? kBentPieces : 1;
     for (std::size_t k = 0; k < strip.size(); ++k) {
         const Vec2 &c = strip[k], &next = strip[(k + 1) % strip.size()];
-        const double p = height(c), q = height(next);
-        if (p <= 0) corners.push_back(point(c));
-        if ((p <= 0) != (q <= 0)) corners.push_back(glm::mix(point(c), point(next), p / (p - q)));
+        const int n = std::abs(next.x - c.x) > 0.5 * Trail::kStripChord ? pieces : 1;
+        for (int i = 0; i < n; ++i) {
+            const Vec2 u = glm::mix(c, next, double(i) / n), v = glm::mix(c, next, double(i + 1) / n);
+            const double p = height(u), q = height(v);
+            if (p <= 0) corners.push_back(point(u));
+            if ((p <= 0) != (q <= 0)) corners.push_back(glm::mix(point(u), point(v), p / (p - q)));
+        }
     }
     if (corners.size() == before) corners.push_back(cut.centre);  // it only just touches
 }
@@ -151,7 +159,7 @@ Vec2 forward_direction(const Recycled<Cut>& cuts) {
 }
 
 void Loops::add(std::span<const Cut> cuts, std::span<const Vec2> strip) {
-    corners.reserve(corners.size() + cuts.size() * (strip.empty() ? kDirections + 2 : strip.size() + 2));
+    corners.reserve(corners.size() + cuts.size() * (strip.empty() ? kDirections + 2 : strip.size() + 2 * kBentPieces));
     for (const Cut& cut : cuts) {
         if (strip.empty())
             add_shadow(cut, corners);
@@ -217,7 +225,9 @@ Outline outline_of(const Trail& trail, int points) {
 
 Recycled<Outline> outlines_of(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
                               const OutlineOptions& options) {
-    return outlines_of(find_trails(tuft, frame, planes, 1, options.film), options.points);
+    Recycled<Trail> trails = find_trails(tuft, frame, planes, 1, options.film);
+    fill_rows(trails);
+    return outlines_of(trails, options.points);
 }
 
 Recycled<Vec2> curve_points(const Outline& outline, int per_span) {

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "core/ease.h"
 #include "footprint/outline/cuts.h"
@@ -17,7 +18,12 @@ constexpr double kOneLength = 0.01;  // of the tuft's length, by which spines of
 constexpr double kOnEdge = 0.6, kOnBroadSide = 0.8;
 // Sine of the angle between a row and its hair up to which hair is not spread: there it lies on its neighbour's.
 constexpr double kAlongRow = 0.2, kAcrossRow = 0.5;
-constexpr double kTurning = 0.15;  // cosine from a broad axis to its row below which it is between both directions
+// Part of a strip's broad axis that lies on the surface, and sine of the angle between it and its hair, from which on
+// its ends follow its neighbours'.
+constexpr double kLies = 0.6, kLiesFlat = 0.8, kAcrossHair = 0.5, kSquare = 0.8;
+constexpr double kMostAslant = 2;   // times its half width, that a strip's edge lies from its broad axis
+constexpr double kStraight = 0.01;  // of its half width
+constexpr double kTurning = 0.15;   // cosine from a broad axis to its row below which it is between both directions
 
 /// Broad half of a section on one side of its spine, metres, (u, v, height): `to` by `part` in place of its own.
 struct Half {
@@ -28,8 +34,9 @@ struct Half {
 /// Both halves of a section, towards the spine that follows in its row and towards the one before it.
 struct Halves {
     Half next, last;
-    Vec2 row{0};        ///< metres, along the row from neighbour to neighbour
-    double widens = 0;  ///< 0–1: it only widens, at its own height
+    Vec2 row{0};                           ///< metres, along the row from neighbour to neighbour
+    double widens = 0;                     ///< 0–1: it only widens, at its own height
+    std::optional<Vec2> to_next, to_last;  ///< metres, (u, v), midway to the neighbours
 };
 
 /// Direction across a section, unit: that of its hair.
@@ -90,12 +97,12 @@ double way_along(const Vec2& row, const Vec3& broad, double part) {
 
 /// Takes the halves where they lie, at constant area.
 void spread_section(Cut& cut, const Halves& halves) {
-    const auto& [next, last, row, widens] = halves;
+    const Half &next = halves.next, &last = halves.last;
     if (next.part <= 0 && last.part <= 0) return;
     const Vec3 thick = cut.thick(), hair = hair_of(cut);
     const double part = std::max(next.part, last.part);
     // Sections turn by half a turn where the tuft bends to the other side.
-    const double way = way_along(row, cut.broad(), part);
+    const double way = way_along(halves.row, cut.broad(), part);
     const Vec3 own = way * cut.broad();
     const Vec3 up = glm::mix(own, next.to, next.part), down = glm::mix(-own, last.to, last.part);
     const Vec3 broad = (way < 0 ? -0.5 : 0.5) * (up - down);
@@ -107,7 +114,45 @@ void spread_section(Cut& cut, const Halves& halves) {
     // The hair of a turned section leans to one side of its strip; spread hair stands up.
     const double leans = glm::dot(thick, cut.broad()) / std::max(glm::dot(cut.broad(), cut.broad()), 1e-18);
     cut.centre += 0.5 * Trail::kStripChord * Vec2(up + down);
-    set_axes(cut, broad, area / (width * size) * across + (1 - part) * leans * broad, widens);
+    set_axes(cut, broad, area / (width * size) * across + (1 - part) * leans * broad, halves.widens);
+}
+
+/// Bends a spread section along its hair, a unit vector on the surface, so that its edges lie midway to its neighbours
+/// there. `spine`: where the section's spine is, (u, v).
+void bend_section(Cut& cut, const Halves& halves, const Vec2& spine, const Vec2& hair) {
+    if (!halves.to_next && !halves.to_last) return;
+    const Vec2 broad(cut.broad());
+    const double half = Cut::kStripChord * glm::length(broad);
+    if (!(half > 1e-9)) return;
+    const double lies = glm::length(broad) / glm::length(cut.broad());
+    const double across = std::abs(broad.x * hair.y - broad.y * hair.x) / glm::length(broad);
+    const double part = smooth_step((lies - kLies) / (kLiesFlat - kLies)) *
+                        smooth_step((across - kAcrossHair) / (kSquare - kAcrossHair));
+    if (part <= 0) return;
+    const bool with_row = glm::dot(halves.row, broad) >= 0;
+    const auto& right = with_row ? halves.to_next : halves.to_last;
+    const auto& left = with_row ? halves.to_last : halves.to_next;
+    // Along the hair from the broad axis: the spine and both edges. An edge without a neighbour goes on straight.
+    const auto along = [&](const Vec2& place, double side) {
+        return glm::dot(place - cut.centre - side * Cut::kStripChord * broad, hair);
+    };
+    const double middle = along(spine, 0);
+    const double r = right ? along(*right, 1) : 2 * middle - along(*left, -1);
+    const double l = left ? along(*left, -1) : 2 * middle - r;
+    const auto bounded = [&](double x) { return std::clamp(x, -kMostAslant * half, kMostAslant * half); };
+    const double mean = part * bounded(0.5 * (r + l)), slant = part * bounded(0.5 * (r - l)),
+                 bow = part * bounded(0.5 * (middle - 0.5 * (r + l)));
+    if (std::max({std::abs(mean), std::abs(slant), std::abs(bow)}) < kStraight * half) return;
+    cut.centre += mean * hair;
+    cut.slant = slant * hair;
+    cut.bow = bow * hair;
+}
+
+/// Whether `other` is the next in its row, and as many of its sections are known.
+bool is_followed_by(const Trail& trail, const Trail& other) {
+    return trail.cuts.size() == other.cuts.size() &&
+           std::any_of(trail.openings.begin(), trail.openings.end(),
+                       [&](const TrailOpening& opening) { return opening.branch == other.branch; });
 }
 
 }  // namespace
@@ -117,11 +162,7 @@ void fill_rows(Recycled<Trail>& trails) {
     for (const Trail& trail : trails) halves.emplace_back(trail.cuts.size());
     for (std::size_t k = 0; k < trails.size(); ++k)
         for (std::size_t l = 0; l < trails.size(); ++l) {
-            const auto& openings = trails[k].openings;
-            const bool beside = std::any_of(openings.begin(), openings.end(), [&](const TrailOpening& opening) {
-                return opening.branch == trails[l].branch;
-            });
-            if (!beside || !trails[k].strip || trails[k].cuts.size() != trails[l].cuts.size()) continue;
+            if (!trails[k].strip || !is_followed_by(trails[k], trails[l])) continue;
             const double differ = smooth_step(std::abs(trails[l].length - trails[k].length) / kOneLength);
             for (std::size_t i = 0; i < trails[k].cuts.size(); ++i) {
                 const Cut &p = trails[k].cuts[i], &q = trails[l].cuts[i];
@@ -131,10 +172,19 @@ void fill_rows(Recycled<Trail>& trails) {
                 }
                 halves[k][i].next = half_to(p, q, differ);
                 halves[l][i].last = half_to(q, p, differ);
+                halves[k][i].to_next = halves[l][i].to_last = 0.5 * (p.centre + q.centre);
             }
         }
-    for (std::size_t k = 0; k < trails.size(); ++k)
-        for (std::size_t i = 0; i < trails[k].cuts.size(); ++i) spread_section(trails[k].cuts[i], halves[k][i]);
+    for (std::size_t k = 0; k < trails.size(); ++k) {
+        Trail& trail = trails[k];
+        const Vec2 run = trail.cuts.front().centre - trail.cuts.back().centre;
+        const double length = glm::length(run);
+        for (std::size_t i = 0; i < trail.cuts.size(); ++i) {
+            const Vec2 spine = trail.cuts[i].centre;
+            spread_section(trail.cuts[i], halves[k][i]);
+            if (length > 1e-9) bend_section(trail.cuts[i], halves[k][i], spine, run / length);
+        }
+    }
 }
 
 }  // namespace tuft::footprint

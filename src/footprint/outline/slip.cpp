@@ -49,6 +49,8 @@ void change_frame(Recycled<Trail>& trails, const Frame& from, const Frame& to) {
             cut.centre = Vec2(to.to_local(from.to_world(Vec3(cut.centre, 0))));
             cut.e = to_other(cut.e);
             cut.m = to_other(cut.m);
+            cut.slant = Vec2(to_other(Vec3(cut.slant, 0)));
+            cut.bow = Vec2(to_other(Vec3(cut.bow, 0)));
         }
 }
 

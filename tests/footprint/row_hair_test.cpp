@@ -1,0 +1,48 @@
+#include <gtest/gtest.h>
+
+#include "footprint/outline/cuts.h"
+
+// Hair of a row whose spines differ in length.
+
+namespace tuft::footprint {
+namespace {
+
+/// The ends of its strips are the quadratic B-spline of the spines' ends: they meet midway between two spines, in the
+/// direction from one to the other, and halve the way to the spine between.
+TEST(RowHair, EndsOfStripsOfOtherLengthsAreOneSmoothCurve) {
+    constexpr double kApart = 2e-3, kChord = Cut::kStripChord;
+    const double ends[] = {-4e-3, -1e-3, 0, -1e-3, -4e-3};  // metres along the hair
+    Recycled<Trail> trails;
+    for (int k = 0; k < 5; ++k) {
+        Trail trail{.branch = k, .length = 1 + ends[k] / 22e-3, .strip = true};
+        for (const double x : {0.0, -6e-3}) {
+            Cut cut{.centre = {ends[k] + x, kApart * k}, .a = 1e-3, .b = 3e-4};
+            cut.e = {0, 1, 0};
+            trail.cuts.push_back(cut);
+            trail.along.push_back(0.9 + x);
+        }
+        if (k > 0) trails.back().openings.push_back({k, {0.0, 0.0}});
+        trails.push_back(std::move(trail));
+    }
+    fill_rows(trails);
+    const auto place = [&](int k, double s) {
+        const Cut& cut = trails[static_cast<std::size_t>(k)].cuts.front();
+        return cut.centre + cut.bent(s * kChord) + s * kChord * Vec2(cut.broad());
+    };
+    for (int k = 0; k < 4; ++k) {
+        EXPECT_NEAR(place(k, 1).x, 0.5 * (ends[k] + ends[k + 1]), 1e-15) << k;
+        EXPECT_NEAR(place(k + 1, -1).x, 0.5 * (ends[k] + ends[k + 1]), 1e-15) << k;
+        const auto slope = [&](int of, double s) {  // of a parabola in s, from its values
+            const double h = s > 0 ? -0.5 : 0.5;
+            return (-3 * place(of, s).x + 4 * place(of, s + h).x - place(of, s + 2 * h).x) / (2 * h);
+        };
+        EXPECT_NEAR(slope(k, 1), 0.5 * (ends[k + 1] - ends[k]), 1e-15) << k;
+        EXPECT_NEAR(slope(k + 1, -1), 0.5 * (ends[k + 1] - ends[k]), 1e-15) << k;
+    }
+    EXPECT_NEAR(place(2, 0).x, 0.25 * (0.5 * (ends[1] + ends[2]) + 2 * ends[2] + 0.5 * (ends[2] + ends[3])), 1e-15);
+    // Outer hair goes on straight.
+    EXPECT_NEAR(place(0, -1).x - place(0, 0).x, place(0, 0).x - place(0, 1).x, 1e-15);
+}
+
+}  // namespace
+}  // namespace tuft::footprint
