@@ -484,7 +484,7 @@ TEST_F(StudioProgram, AKillLosesNoFinishedStroke) {
 
 // A model or project that it opened in place of the bowl is a project of its own.
 TEST_F(StudioProgram, RandomEventsNeitherCrashItNorLoseAStroke) {
-    const Ran ran = studio(kBowl + "set draw-every 80\nrandom 10000 4\nwait-ready\nreport\n");
+    const Ran ran = studio(kBowl + "set draw-every 80\nrandom 5000 4\nwait-ready\nreport\n");
     ASSERT_EQ(ran.status, 0) << ran.err;
     const auto strokes = nlohmann::json::parse(ran.out)["strokes"].get<std::size_t>();
     std::size_t all = 0;
