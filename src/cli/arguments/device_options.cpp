@@ -15,7 +15,9 @@ void add_hand(CLI::App* app, DeviceWork& d) {
     app->add_option("--simulate", d.arm.simulate,
                     "simulate an arm in a hand, in place of a real one: touch, inverse3, falcon or omega.6")
         ->type_name("ARM");
-    app->add_option("--seconds", d.seconds, "seconds that it takes (default: 10)")->check(number_in(0.1, 86400));
+    app->add_option("--seconds", d.seconds,
+                    "seconds that the arm is read (default: 10); the trials of a simulated one come on top")
+        ->check(number_in(0.1, 86400));
     app->add_option("--brush", d.brush, "brush in the holder (default: wolf-medium)")->type_name("BRUSH");
     app->add_option("--model", d.model, "model that the brush touches (default: the bowl)");
     app->add_flag("--restore", d.restore,

@@ -33,8 +33,9 @@ void list_brushes(bool json) {
     for (const std::string& name : names) {
         const brush::Preset p = brush::load_preset(name);
         const std::string width =
-            p.spines > 1 ? fmt::format("{:>2.0f} x {:.1f} mm", p.width / kMillimetre, 2 * p.radius / kMillimetre)
-                         : fmt::format("{:>8.1f} mm", 2 * p.radius / kMillimetre);
+            p.spines > 1 && p.width > 0
+                ? fmt::format("{:>2.0f} x {:.1f} mm", p.width / kMillimetre, 2 * p.radius / kMillimetre)
+                : fmt::format("{:>8.1f} mm", 2 * p.radius / kMillimetre);
         fmt::print("{:<16} {:>4.0f} mm long, {:<11} thick  {}\n", name, p.length / kMillimetre, width, p.note);
     }
 }
