@@ -27,8 +27,8 @@ def one_stroke():
                  (-9, 0, 0.26, 50), (-5, 0, 0.12, 22), (-2, 0, 0, 0)], 18)
         petals.append(s.moved(turn))
     # From the stem to the point: broad, turned onto the edge while it slides and is lifted.
-    for x, y, turn, size in ((44, 22, 24, 1.0), (26, 44, 62, 0.9), (-44, -20, 204, 1.0), (-26, -44, 243, 0.85),
-                             (-48, 8, 172, 0.8), (50, -6, -9, 0.8)):
+    for x, y, turn, size in ((39, 19, 24, 1.0), (23, 39, 62, 0.9), (-39, -18, 204, 1.0), (-23, -39, 243, 0.85),
+                             (-43, 7, 172, 0.8), (44, -5, -9, 0.8)):
         s = Stroke("leaf", double_loaded("indigo", "gamboge"))
         s.curve([(-13, 0, 0, 90), (-11, 0, 0.3, 90), (-5, 1.2, 0.55, 92), (3, 2.2, 0.5, 78), (11, 1.8, 0.3, 48),
                  (18, 0.4, 0.12, 22), (24, -0.8, 0, 8)], 20)
@@ -62,9 +62,9 @@ def bamboo():
                      (at(high), high + 7, 0.3, 0), (at(high), high + 3, 0.42, 0), (at(high), high + 2.6, 0, 0)], 60)
             stalks.append(s)
             if low < 80:
-                joints.append(Stroke("joint").curve([(at(low) - 6.4, low + 5.7, 0, 0), (at(low) - 5.6, low + 4.5, 0.22, 0),
-                                                     (at(low), low + 5, 0.12, 0), (at(low) + 5.6, low + 4.5, 0.22, 0),
-                                                     (at(low) + 6.4, low + 5.7, 0, 0)], 30))
+                joints.append(Stroke("joint").curve([(at(low) - 6.4, low + 1.5, 0, 0), (at(low) - 5.6, low + 0.3, 0.22, 0),
+                                                     (at(low), low + 0.8, 0.12, 0), (at(low) + 5.6, low + 0.3, 0.22, 0),
+                                                     (at(low) + 6.4, low + 1.5, 0, 0)], 30))
     for x, y, turns in ((-32, -42, (28, 62, 96)), (18, -20, (8, 40, 74)), (16, -60, (20, 58, 95)),
                         (-42, 2, (150, 118, 84)), (-34, 42, (22, 58)), (16, 20, (14, 52, 88)), (4, -20, (166, 128))):
         for turn in turns:
