@@ -45,20 +45,18 @@ Points resampled(const Points& points, double spacing) {
 }
 
 /// Catmull–Rom curve through `keys`.
-Points curve(const Points& keys, bool closed) {
+Points curve(const Points& keys) {
     const int n = static_cast<int>(keys.size());
-    const auto key = [&](int i) {
-        return keys[static_cast<std::size_t>(closed ? (i + n) % n : std::clamp(i, 0, n - 1))];
-    };
+    const auto key = [&](int i) { return keys[static_cast<std::size_t>(std::clamp(i, 0, n - 1))]; };
     Points dense;
-    for (int i = 0; i < (closed ? n : n - 1); ++i)
+    for (int i = 0; i < n - 1; ++i)
         for (int k = 0; k < 24; ++k) {
             const double t = k / 24.0;
             const Vec2 a = key(i - 1), b = key(i), c = key(i + 1), d = key(i + 2);
             dense.push_back(0.5 * (2.0 * b + t * (c - a) + t * t * (2.0 * a - 5.0 * b + 4.0 * c - d) +
                                    t * t * t * (3.0 * b - a - 3.0 * c + d)));
         }
-    dense.push_back(key(closed ? 0 : n - 1));
+    dense.push_back(key(n - 1));
     return resampled(dense, kSpacing);
 }
 
@@ -148,7 +146,7 @@ Points petal(const Vec2& heart, double turn, double foot, double length, double 
     for (const auto& k : half) keys.push_back(heart + (foot + k[0] * (length - foot)) * u - k[1] * width * v);
     for (int i = 4; i >= 0; --i)
         keys.push_back(heart + (foot + half[i][0] * (length - foot)) * u + half[i][1] * width * v);
-    return curve(keys, false);
+    return curve(keys);
 }
 
 /// A leaf: both sides from foot to point, and veins.
@@ -169,13 +167,13 @@ Leaf leaf(const Vec2& foot, double turn, double length, double width, double ben
         return foot + f * length * u + (bend * length * f * f + side * width) * v;
     };
     Leaf out{.width = width};
-    out.near = curve({at(0, 0), at(0.15, -0.28), at(0.42, -0.5), at(0.75, -0.28), at(1, 0)}, false);
-    out.far = curve({at(0, 0), at(0.15, 0.28), at(0.42, 0.5), at(0.75, 0.28), at(1, 0)}, false);
-    out.veins.push_back(curve({at(0, 0), at(0.3, 0), at(0.6, 0), at(0.9, 0)}, false));
+    out.near = curve({at(0, 0), at(0.15, -0.28), at(0.42, -0.5), at(0.75, -0.28), at(1, 0)});
+    out.far = curve({at(0, 0), at(0.15, 0.28), at(0.42, 0.5), at(0.75, 0.28), at(1, 0)});
+    out.veins.push_back(curve({at(0, 0), at(0.3, 0), at(0.6, 0), at(0.9, 0)}));
     for (const double f : {0.22, 0.42, 0.62})
         for (const double side : {-1.0, 1.0})
-            out.veins.push_back(curve(
-                {at(f, 0), at(f + 0.1, 0.17 * side), at(f + 0.17, 0.7 * side * (0.5 - 0.55 * (f - 0.22)))}, false));
+            out.veins.push_back(
+                curve({at(f, 0), at(f + 0.1, 0.17 * side), at(f + 0.17, 0.7 * side * (0.5 - 0.55 * (f - 0.22)))}));
     return out;
 }
 
@@ -201,13 +199,13 @@ std::vector<stroke::RecordedStroke> blue_and_white() {
     for (int k = 0; k < 10; ++k) {  // stamens: a hair and its anther
         const double a = 2 * kPi * (k + 0.5) / 10, r = k % 2 ? 4.4 : 3.4;
         const Vec2 u{std::cos(a), std::sin(a)}, end = heart + r * u;
-        p.line("stamen", curve({heart + 1.0 * u, heart + 0.6 * r * u, end}, false), 0.35 * kLine);
+        p.line("stamen", curve({heart + 1.0 * u, heart + 0.6 * r * u, end}), 0.35 * kLine);
         const Vec2 in = end - 0.3 * u, out = end + 0.35 * u;
         p.add({"anther", {{in.x, in.y, 0}, {end.x, end.y, 0.95, 0.5}, {out.x, out.y, 0}}}, "wolf-small*0.6", "cobalt",
               0.02);
     }
-    p.line("stem", curve({{-0.2, 9}, {1, 20}, {0.6, 30}, {-1, 42}, {-5, 54}}, false), 1.3);
-    p.line("stem", curve({{0.9, 28}, {9, 21}, {19, 15}, {25.6, 6.6}}, false), 0.9);
+    p.line("stem", curve({{-0.2, 9}, {1, 20}, {0.6, 30}, {-1, 42}, {-5, 54}}), 1.3);
+    p.line("stem", curve({{0.9, 28}, {9, 21}, {19, 15}, {25.6, 6.6}}), 0.9);
     for (const Leaf& l : leaves) {
         p.line("outline", l.near, kLine);
         p.line("outline", l.far, kLine);

@@ -104,9 +104,15 @@ std::size_t count_inks(Writing& w) {
 }  // namespace
 
 std::vector<std::vector<Vec2>> read_sketch(const std::filesystem::path& file) {
-    WritingForm form = read_form(file, io::SvgPainting::automatic);
-    form =
-        is_svg(file) && !areas_of(form.traces).empty() ? area_form(std::move(form)) : line_form(file, std::move(form));
+    WritingForm form;
+    try {
+        form = read_form(file, io::SvgPainting::automatic);
+        form = is_svg(file) && !areas_of(form.traces).empty() ? area_form(std::move(form))
+                                                              : line_form(file, std::move(form));
+    } catch (const Error&) {  // of its areas: the file may have lines nevertheless
+        if (!is_svg(file)) throw;
+        form = line_form(file, read_form(file, io::SvgPainting::brush));
+    }
     const double span = std::max({form.width, form.height, 1e-9});
     std::vector<std::vector<Vec2>> lines = drawn_lines(form);
     for (std::vector<Vec2>& line : lines)

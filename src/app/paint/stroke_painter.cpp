@@ -138,14 +138,19 @@ void StrokePainter::paint_drawing(PaintDrawing& command) {
     cancel();
     const ProgressFn shown = context_.progress("Placing the drawing");
     shown("", 0);
+    direct(command.drawing.entries, command.group);  // a locked layer refuses it before any ink is mixed
     std::vector<stroke::JournalEntry> entries = entries_of(command);
     direct(entries, command.group);
     stroke::Document& document = *context_.work.document;
     const std::uint64_t before = document.journal().next_id();
-    const std::vector<std::string> mixed = stroke::mix_drawing_inks(entries, document);
+    std::vector<std::string> mixed = stroke::mix_drawing_inks(entries, document);
     // Of a drawing that is refused nothing stays, or the next one would be mixed from its pigments.
     const auto forget_unused = [&] {
-        if (document.journal().next_id() == before) document.forget_inks(mixed);
+        if (document.journal().next_id() != before) return;
+        std::erase_if(mixed, [&](const std::string& name) {  // which the project file has
+            return std::ranges::find(context_.own_inks, name, &ink::Ink::name) != context_.own_inks.end();
+        });
+        document.forget_inks(mixed);
     };
     try {
         paint_group(std::move(entries), command.group, shown);

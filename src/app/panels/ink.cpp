@@ -96,7 +96,7 @@ bool named_swatch(Ui& ui, const Swatch& shown, const std::string& label, const S
 }
 
 bool is_colour(const Swatch& shown) {
-    return shown.title.starts_with('#');
+    return ink::colour_of_hex(shown.title).has_value();
 }
 
 // The inks of this work, then the person's own, but for those that are part of it already. Those that are named by

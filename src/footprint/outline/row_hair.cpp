@@ -126,10 +126,12 @@ void bend_section(Cut& cut, const Halves& halves, const Vec2& spine, const Vec2&
     if (!(half > 1e-9)) return;
     const double lies = glm::length(broad) / glm::length(cut.broad());
     const double across = std::abs(broad.x * hair.y - broad.y * hair.x) / glm::length(broad);
-    const double part = smooth_step((lies - kLies) / (kLiesFlat - kLies)) *
+    // A section square to its row is between both directions.
+    const double way = way_along(halves.row, cut.broad(), 1);
+    const double part = std::abs(way) * smooth_step((lies - kLies) / (kLiesFlat - kLies)) *
                         smooth_step((across - kAcrossHair) / (kSquare - kAcrossHair));
     if (part <= 0) return;
-    const bool with_row = glm::dot(halves.row, broad) >= 0;
+    const bool with_row = way >= 0;
     const auto& right = with_row ? halves.to_next : halves.to_last;
     const auto& left = with_row ? halves.to_last : halves.to_next;
     // Along the hair from the broad axis: the spine and both edges. An edge without a neighbour goes on straight.

@@ -170,7 +170,7 @@ FitResult take_off_knuckles(FitResult fitted, const FitTarget& target, const std
                 next = fit.finish(std::move(next.stations));
                 if (next.value > best.value)
                     best = std::move(next);
-                else
+                else if (fit.may_draw())
                     fit.draw(best.stations);
             }
         if (best.value < before + kLeastGain) break;
