@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# same_bits.sh PROGRAM...: all programs print the same line; those that cannot run here print "skipped". A program is told
-# the end of its name, which is its level of x86-64.
+# same_bits.sh PROGRAM...: all programs print the same line; those that cannot run here print "skipped". A program gets
+# the end of its name, its level of x86-64, as its argument.
 set -euo pipefail
 seen=""
 for program in "$@"; do
