@@ -127,10 +127,10 @@ double tried_height(const brush::Preset& preset) {
     return std::max(kOfWidth * width, kOfLength * preset.length);
 }
 
-TriedStroke paint_tried_stroke(const brush::Preset& preset, const ProgressFn& progress) {
+TriedStroke paint_tried_stroke(const brush::Preset& preset, const ProgressFn& progress, const DiskCache& tip_lags) {
     const double height = tried_height(preset);
     const stroke::Model sheet = make_sheet(height / kHeight);
-    stroke::Document painting(sheet, {.substrate = "rice-paper"});
+    stroke::Document painting(sheet, {.substrate = "rice-paper", .tip_lags = tip_lags});
     painting.use(preset);
     if (is_dabbed(preset)) {
         for (int k = -1; k <= 1; ++k)

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "brush/preset/preset.h"
+#include "core/files/disk_cache.h"
 #include "core/system/progress.h"
 
 /// \file
@@ -23,7 +24,8 @@ double tried_height(const brush::Preset& preset);
 /// Paints a stroke of a full brush on a sheet in proportion to it, through `stroke::Document`: pressed, travelled in a
 /// wave, turned, lifted. A broad side goes across the path, then along it, then across again. Foam is dabbed three
 /// times, each time lighter. The same preset gives the same bits. Throws `Cancelled` where `progress` returns false.
-/// Cost: 0.1 s for a round brush, 1 s for a flat, 8 s for the widest hake.
-TriedStroke paint_tried_stroke(const brush::Preset& preset, const ProgressFn& progress = {});
+/// `tip_lags`: cache of measured tip lags. Cost: 0.1 s for a round brush, 1 s for a flat, 8 s for the widest hake.
+TriedStroke paint_tried_stroke(const brush::Preset& preset, const ProgressFn& progress = {},
+                               const DiskCache& tip_lags = {});
 
 }  // namespace tuft::pictures

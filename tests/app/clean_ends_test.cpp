@@ -60,7 +60,7 @@ struct Painted : stroke::Document {
         : stroke::Document(model), brush_(brush) {
         const brush::Preset preset = brush::load_preset(brush);
         stroke::TiltedTipLag tilted(preset);
-        PointerInput hand(*model.query, preset, settings, {stroke::measure_tip_lag(preset, tilted)});
+        PointerInput hand(*model.query, preset, settings, {tilted.as_held()});
         for (const Aim& aim : aims) take(hand.move(aim));
         Aim last = aims.back();  // the button comes up at the last place, one event later
         last.time += 1 / kRate;

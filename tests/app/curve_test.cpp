@@ -86,7 +86,7 @@ TEST_P(TiltedCurve, ItsInkIsOnIt) {
                    .pressure = 0.4,
                    .tilt = {GetParam().first, GetParam().second}};
     stroke::TiltedTipLag tilted(preset);
-    hand.holder.tip_lag = stroke::measure_tip_lag(preset, tilted);
+    hand.holder.tip_lag = tilted.as_held();
     hand.holder.tip_lag_change = [&tilted](double depth, const Vec2& lean, double turn) {
         return tilted.at(depth, lean, turn);
     };

@@ -299,6 +299,34 @@ TEST_F(PointerOnSheet, AWideFerruleFollowsItsStrokeByTheClosedForm) {
     }
 }
 
+TEST_F(PointerOnSheet, TheTipLagFollowsATurnOfTheStrokeAsInATrace) {
+    const brush::Preset flat = brush::load_preset("flat-12");
+    std::vector<double> turns;
+    const TipLag recorded{.upright = {{0, 0}, {0.02, 0}}, .tilted = [&](double, const Vec2&, double turn) {
+                              turns.push_back(turn);
+                              return Vec2{0};
+                          }};
+    PointerInput hand(*query_, flat, {.smoothing = 1e-6}, recorded);
+    // To the right on its edge, then up across its broad side, at 0.05 m/s.
+    constexpr double kCorner = 0.03;
+    std::vector<std::pair<double, double>> after;  // metres after the corner, and the turn there
+    for (int i = 0; i < 300; ++i) {
+        const double s = 2e-4 * i;
+        turns.clear();
+        hand.move(above(std::min(s, kCorner) - kCorner, std::max(0.0, s - kCorner), 0.004 * i));
+        if (s > kCorner && !turns.empty()) after.emplace_back(s - kCorner, turns.back());
+    }
+    ASSERT_GT(after.size(), 100u);
+    stroke::FollowedTurn followed(flat.length, 0);
+    double gone = 0;
+    for (const auto& [s, turn] : after) {
+        const double expected = followed.follow(-std::numbers::pi / 2, s - gone);
+        gone = s;
+        // The dragged point turns the path within its string; the turn lags by the part of it that has gone: 1.5 mm.
+        EXPECT_NEAR(std::remainder(turn - expected, std::numbers::pi), 0, 1.5e-3 / (0.5 * flat.length) * 1.6) << s;
+    }
+}
+
 TEST_F(PointerOnSheet, ATurnOfThePenTurnsTheTuftAboutItsHolder) {
     const PointerInput hand(*query_, preset_, {});
     Aim aim = above(0, 0, 0, 0.5);

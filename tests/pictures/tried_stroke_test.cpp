@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "io/image/image.h"
+#include "stroke/placement/tip_lag.h"
 
 namespace tuft::pictures {
 namespace {
@@ -36,7 +37,7 @@ class TriedStrokeOf : public testing::TestWithParam<std::string> {};
 // A picture that cuts the stroke off, or in which it is lost, does not show the brush.
 TEST_P(TriedStrokeOf, EachShippedBrushLiesWholeInItsPicture) {
     const std::string& name = GetParam();
-    const TriedStroke s = paint_tried_stroke(brush::load_preset(name));
+    const TriedStroke s = paint_tried_stroke(brush::load_preset(name), {}, stroke::shared_tip_lag_cache());
     show(s, name);
     int dark = 0, border = 0;
     for (int y = 0; y < kHeight; ++y)
@@ -57,9 +58,9 @@ TEST(TriedStroke, OfOnePresetIsTheSameToTheBit) {
     EXPECT_EQ(paint_tried_stroke(wolf).rgb, paint_tried_stroke(wolf).rgb);
 }
 
-// Broad at first, then along its edge: hair 60 mm wide and 5 mm thick, which spreads under its load.
+// Broad at first, then along its edge: hair 12 mm wide and 4 mm thick, which spreads under its load.
 TEST(TriedStroke, OfAFlatBrushGoesFromItsBroadSideToItsEdge) {
-    const TriedStroke s = paint_tried_stroke(brush::load_preset("hake-60"));
+    const TriedStroke s = paint_tried_stroke(brush::load_preset("flat-12"), {}, stroke::shared_tip_lag_cache());
     const double broad = thickness(s, 60, 110), edge = thickness(s, 150, 180);
     EXPECT_NEAR(broad, kHeight / 1.9, 0.15 * kHeight) << "the sheet is 1.9 widths high";
     EXPECT_LT(edge, 0.5 * broad);

@@ -71,7 +71,7 @@ HolderOptions options_on(const TriangleMesh& mesh) {
     const brush::Preset preset = brush::load_preset("mixed-medium");
     HolderOptions o = holder_options(preset, mesh);
     TiltedTipLag tilted(preset);
-    o.tip_lag = measure_tip_lag(preset, tilted);
+    o.tip_lag = tilted.as_held();
     return o;
 }
 
@@ -253,7 +253,7 @@ TEST(Sampling, AHolderIsNoFasterThanItsHandMakesIt) {
                     }
                     trace.samples.back().pressure = press[0] == 'a' ? 0.4 : 0;
                     HolderOptions options = holder_options(preset, flat);
-                    options.tip_lag = measure_tip_lag(preset, tilted);
+                    options.tip_lag = tilted.as_held();
                     options.tip_lag_change = [&](double depth, const Vec2& lean, double turn) {
                         return tilted.at(depth, lean, turn);
                     };

@@ -1,10 +1,13 @@
 #include "stroke/placement/tip_lag.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <numbers>
@@ -122,6 +125,49 @@ struct CoarseFlat {
         };
     }
 };
+
+/// The lag of an upright brush that lags by turn: as it is held, and turned.
+std::vector<double> values_of(TiltedTipLag& lag) {
+    std::vector<double> values;
+    for (const TipLag& at : lag.as_held()) values.insert(values.end(), {at.depth, at.length});
+    const Vec2 at = lag.at(0.004, Vec2{0}, 0.3);
+    values.insert(values.end(), {at.x, at.y});
+    return values;
+}
+
+TEST(TipLag, IsMeasuredOncePerPresetAndTakenFromTheCacheToTheBit) {
+    namespace fs = std::filesystem;
+    const fs::path folder = fs::path(testing::TempDir()) / ("tuft-tip-lag-" + std::to_string(::getpid()));
+    fs::remove_all(folder);
+    const DiskCache cache(folder);
+    const auto entries = [&] {
+        return std::vector<fs::directory_entry>(fs::directory_iterator(folder), fs::directory_iterator());
+    };
+    brush::Preset preset = brush::load_preset("filbert-12");
+    preset.spines = 2;
+    preset.segments = 6;
+    TiltedTipLag without(preset), first(preset, cache), second(preset, cache);
+    const std::vector<double> measured = values_of(without);
+    EXPECT_EQ(values_of(first), measured);
+    const std::size_t n = entries().size();
+    EXPECT_EQ(n, 3u) << "as held, and turned by the two nodes beside";
+    // What is read counts as used: the cache dates it anew.
+    const auto past = fs::file_time_type::clock::now() - std::chrono::hours(1);
+    for (const fs::directory_entry& entry : entries()) fs::last_write_time(entry, past);
+    EXPECT_EQ(values_of(second), measured);
+    for (const fs::directory_entry& entry : entries()) EXPECT_GT(fs::last_write_time(entry), past);
+    EXPECT_EQ(entries().size(), n);
+    // A brush that differs in the last bit is another one; under another name it is the same.
+    preset.name = "mine";
+    TiltedTipLag renamed(preset, cache);
+    renamed.as_held();
+    EXPECT_EQ(entries().size(), n);
+    preset.tip_power = std::nextafter(preset.tip_power, 2.0);
+    TiltedTipLag other(preset, cache);
+    other.as_held();
+    EXPECT_EQ(entries().size(), n + 1);
+    fs::remove_all(folder);
+}
 
 TEST(TipLag, AFlatBeginsWhereItsPathDoesHoweverItLiesToIt) {
     constexpr double kCell = 2e-4;

@@ -8,7 +8,6 @@
 #include "brush/tuft/ferrule.h"
 #include "core/ease.h"
 #include "stroke/placement/surface_mapping.h"
-#include "stroke/placement/tip_lag.h"
 
 namespace tuft::app {
 namespace {
@@ -253,11 +252,17 @@ Quat PointerInput::rotation_at(const Aim& aim, const Vec3& up) const {
     return turned(glm::normalize(glm::quat_cast(Mat3(x, glm::cross(up, x), up))), roll_at(aim));
 }
 
-// The holder has gone on: it turns as the pen does, and after its stroke.
+// The holder has gone on: it turns as the pen does, and after its stroke. Its hair follows.
 void PointerInput::turn_holder(const Aim& aim, const Vec3& motion) {
-    if (!wide_ || !settings_.roll_follow) return;
+    if (!wide_) return;
     const stroke::Axes axes = stroke::axes_across(normal_, aim.view_right, -aim.view_up);
-    stroke::follow_stroke(follower_, -aim.turn, {glm::dot(motion, axes.right), glm::dot(motion, axes.down)});
+    if (settings_.roll_follow)
+        stroke::follow_stroke(follower_, -aim.turn, {glm::dot(motion, axes.right), glm::dot(motion, axes.down)});
+    const Vec2 ahead{glm::dot(dragged_.string, axes.right), glm::dot(dragged_.string, axes.down)};
+    if (!holder_.turned || glm::length(ahead) < 1e-9) return;
+    const double turn = roll_at(aim) - std::atan2(-ahead.y, ahead.x);
+    if (!turn_) turn_.emplace(holder_.tuft_length, turn);
+    turn_->follow(turn, glm::length(motion));
 }
 
 // Where the holder is for ink at the point: ahead along the string, and under a lean aside.
@@ -268,11 +273,7 @@ Vec3 PointerInput::ahead_of(const Aim& aim, const Vec3& normal, double pressure)
     const Vec2 ahead{glm::dot(dragged_.string, axes.right), glm::dot(dragged_.string, axes.down)};
     if (glm::length(ahead) < 1e-9) return Vec3(0);
     const Vec2 tilt = settings_.tilt + lean_of_make(aim, normal);
-    double roll = roll_at(aim);
-    // Hair falls over from its edge to its broad side as late as a make's lean follows.
-    if (const Vec2 late{glm::dot(leant_.string, axes.right), glm::dot(leant_.string, axes.down)};
-        holder_.turned && glm::length(late) > 1e-9)
-        roll += std::atan2(late.y, late.x) - std::atan2(ahead.y, ahead.x);
+    const double roll = turn_ ? turn_->turn() + std::atan2(-ahead.y, ahead.x) : roll_at(aim);
     const Vec2 lag = taut * stroke::tip_lag_at(holder_, pressure, {tilt.x, -tilt.y}, roll, glm::normalize(ahead));
     const double spread = pressure * spread_ * (1 - smooth_step(gone_ / (kSpreadGone * holder_.tuft_length)));
     return lag.x * axes.right + lag.y * axes.down + spread * dragged_.string;
@@ -309,8 +310,9 @@ void PointerInput::pen_down(const Aim& aim, const AimedSurface& hit, const Vec3&
     motion_.time = motion_.speed = motion_.rest = motion_.pressure = gone_ = 0;
     spread_ = 0;
     follower_ = {};
-    turn_holder(aim, Vec3(0));
+    turn_.reset();
     dragged_ = {point_ - holder_.tip_lag_turn * towards, towards};
+    turn_holder(aim, Vec3(0));
     const Vec3 leans = towards != Vec3(0) ? towards : across(aim);
     leant_ = {point_ - stroke::lean_string(holder_) * leans, leans};
     steps.push_back({StrokeStep::Kind::begin, {}});

@@ -9,6 +9,7 @@
 #include "render/gl/gl_camera.h"
 #include "stroke/gesture/roll.h"
 #include "stroke/placement/placement.h"
+#include "stroke/placement/tip_lag.h"
 
 /// \file
 /// From cursor movements to poses of a brush. Called by tools/stroke_input.h. Window thread.
@@ -152,14 +153,15 @@ class PointerInput {
     double reach_;                   ///< metres, radius in which gaps are bridged
     double bridged_ = -1;            ///< `motion_.time` when the goal was last over a gap; negative: never
     bool down_ = false;
-    std::optional<bool> on_back_;   ///< of the surface, where it was set down
-    bool over_edge_ = false;        ///< the cursor crossed an edge of the outline since it was pressed
-    Aim aim_;                       ///< the last one
-    std::vector<Waiting> waiting_;  ///< of a clean stroke, until its direction is known
-    DraggedPoint dragged_;          ///< on a string of `tip_lag_turn`: where the tip lag points
-    DraggedPoint leant_;            ///< on one of `stroke::lean_string`: where the make leans
-    double gone_ = 0;               ///< metres moved since pen down
-    double spread_ = 0;             ///< metres, additional lag of the tip there, at pressure 1
+    std::optional<bool> on_back_;               ///< of the surface, where it was set down
+    bool over_edge_ = false;                    ///< the cursor crossed an edge of the outline since it was pressed
+    Aim aim_;                                   ///< the last one
+    std::vector<Waiting> waiting_;              ///< of a clean stroke, until its direction is known
+    DraggedPoint dragged_;                      ///< on a string of `tip_lag_turn`: where the tip lag points
+    std::optional<stroke::FollowedTurn> turn_;  ///< of a brush whose tip lag differs by turn
+    DraggedPoint leant_;                        ///< on one of `stroke::lean_string`: where the make leans
+    double gone_ = 0;                           ///< metres moved since pen down
+    double spread_ = 0;                         ///< metres, additional lag of the tip there, at pressure 1
     Vec3 goal_{0}, goal_normal_{0, 0, 1}, point_{0}, normal_{0, 0, 1};
     Motion motion_;
 };

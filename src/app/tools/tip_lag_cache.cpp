@@ -7,7 +7,7 @@ namespace tuft::app {
 TipLag TipLagCache::find(const brush::Preset& preset) {
     if (std::string content = brush::preset_toml(preset); measured_ != content) {
         measured_.clear();
-        upright_ = stroke::measure_tip_lag(preset, tilted_.emplace(preset));
+        upright_ = tilted_.emplace(preset, stroke::shared_tip_lag_cache()).as_held();
         measured_ = std::move(content);
     }
     return {upright_, [this](double depth, const Vec2& lean, double turn) { return tilted_->at(depth, lean, turn); }};

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <span>
 #include <sstream>
 
 #include "core/error.h"
+#include "core/files/disk_cache.h"
 #include "core/files/files.h"
 #include "core/files/shipped_file.h"
 #include "core/files/toml_text.h"
@@ -437,6 +439,18 @@ std::string preset_toml(const Preset& p) {
     for (const WholeField& w : kWholeFields)
         if (std::string_view(w.table) == "hair") out << w.key << " = " << p.*w.member << "\n";
     return out.str();
+}
+
+void add_to(CacheKey& key, const Preset& p) {
+    key.add(p.spine);
+    for (const Field& f : kFields) key.add(p.*f.member);
+    for (const WholeField& f : kWholeFields) key.add(p.*f.member);
+    key.add(p.geometry != nullptr);
+    if (!p.geometry) return;
+    key.add_array(std::span<const Vec3>(p.geometry->points));
+    key.add_array(std::span<const std::array<std::uint32_t, 3>>(p.geometry->triangles));
+    for (const std::vector<std::uint32_t>& line : p.geometry->lines)
+        key.add_array(std::span<const std::uint32_t>(line));
 }
 
 }  // namespace tuft::brush

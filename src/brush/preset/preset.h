@@ -12,6 +12,10 @@
 /// \file
 /// Brush presets: the constants of a tuft, which do not change while it paints. `brush`, `stroke` and `io` read
 /// them; users write them as TOML.
+namespace tuft {
+class CacheKey;
+}
+
 namespace tuft::brush {
 
 /// Solver of the spine's shape under load.
@@ -168,6 +172,9 @@ std::vector<std::string> list_presets();
 
 /// Returns the preset as TOML. `load_preset` reads the same values back (1e-9).
 std::string preset_toml(const Preset& preset);
+
+/// Adds every value of the preset but its name and note, to the bit, to the key of what is computed from it.
+void add_to(CacheKey& key, const Preset& preset);
 
 /// Parses TOML text; `source` names it in errors. The key `geometry` names a file in `folder`, and is refused without
 /// one; `geometry_obj` holds the geometry itself, as `preset_toml` writes it.

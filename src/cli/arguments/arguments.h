@@ -39,7 +39,7 @@ struct Surface : FileReading {
     std::string texel_store = "auto";  ///< auto | float | packed
     std::string substrate = "porcelain";
     bool plain = false;     ///< ignores the model's own colours
-    bool no_cache = false;  ///< neither reads nor writes prepared models
+    bool no_cache = false;  ///< neither reads nor writes the user's cache
 };
 
 /// Options of all commands.

@@ -115,9 +115,9 @@ void add_surface(CLI::App* app, Surface& s) {
 }
 
 void add_cache(CLI::App* app, Surface& s) {
-    app->add_flag(
-        "--no-cache", s.no_cache,
-        "neither read nor write prepared models and fitted strokes (in tuft/ of $XDG_CACHE_HOME or ~/.cache)");
+    app->add_flag("--no-cache", s.no_cache,
+                  "neither read nor write prepared models, fitted strokes and measured brushes (in tuft/ of "
+                  "$XDG_CACHE_HOME or ~/.cache)");
 }
 
 CLI::Option* add_point(CLI::App* app, const std::string& name, std::vector<double>& to, const std::string& what) {

@@ -68,7 +68,7 @@ int run(const Film& a) {
     Console console(a.common.quiet);
     const auto project = open_project(a.replay.project, io::Access::read, console);
     const stroke::Model model = replay_model(a.replay, *project, console);
-    stroke::Document painting(model);
+    stroke::Document painting(model, {.tip_lags = tip_lag_cache(a.replay.surface)});
     painting.use(project->substrate);
     io::use_presets(project->file, painting);
     io::apply_recolouring(project->file, painting);

@@ -352,7 +352,9 @@ int paint(const Paint& a, const StrokeSource& source) {
     visible.reset();
     strokes.insert(strokes.begin(), edits.begin(), edits.end());
 
-    stroke::Document painting(model, {.substrate = a.surface.substrate, .record_forces = !a.output.forces.empty()});
+    stroke::Document painting(model, {.substrate = a.surface.substrate,
+                                      .record_forces = !a.output.forces.empty(),
+                                      .tip_lags = tip_lag_cache(a.surface)});
     if (before) {
         restore(*before, painting, console);
         apply_recolouring(before->file, painting, {}, console);

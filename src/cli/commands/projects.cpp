@@ -155,7 +155,7 @@ int run(const Replay& a) {
     outputs.frame = a.model.empty() ? project->frame : frame_of(a.surface.unit, a.surface.up, project->frame);
     const stroke::Model model = replay_model(a, *project, console);
 
-    stroke::Document painting(model);
+    stroke::Document painting(model, {.tip_lags = tip_lag_cache(a.surface)});
     painting.use(project->substrate);
     io::use_presets(project->file, painting);
     const RevisedStrokes revised = replay_strokes(a, *project, painting);

@@ -116,7 +116,7 @@ variants::Outcome TaskPainter::paint(const variants::Task& task) {
     if (!a.view.directed) look_at_strokes(a.view, strokes, model);
     if (task.picture.zoom > 1) look_closer(a.view, task.picture.zoom, strokes, model);
     if (task.sample > 0) variants::deviate(strokes, task.tolerance, task.seed);
-    stroke::Document painting(model, {.substrate = a.surface.substrate});
+    stroke::Document painting(model, {.substrate = a.surface.substrate, .tip_lags = tip_lag_cache(a.surface)});
     prepare_strokes(strokes, painting, a, console_);
     check_sizes(strokes, painting, model, a);
     variants::Outcome out;

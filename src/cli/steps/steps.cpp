@@ -97,6 +97,10 @@ void tell_sides(const mesh::RepairReport& repairs, Console& console) {
 
 }  // namespace
 
+DiskCache tip_lag_cache(const Surface& s) {
+    return s.no_cache ? DiskCache() : stroke::shared_tip_lag_cache();
+}
+
 Loaded load_model(const fs::path& path, const Surface& s, Console& console) {
     stroke::ModelOptions options = model_options(s, console);
     if (!s.no_cache) options.cache = stroke::shared_model_cache();

@@ -26,6 +26,9 @@ FileFrame frame_of(const std::string& unit, const std::string& up, const FileFra
 /// Returns the atlas and UV options of `stroke` for these arguments.
 stroke::ModelOptions model_options(const Surface& surface, Console& console);
 
+/// Returns the cache of measured tip lags for `stroke::DocumentOptions`: none with `--no-cache`.
+DiskCache tip_lag_cache(const Surface& surface);
+
 /// A model and how its file was read.
 struct Loaded {
     stroke::Model model;

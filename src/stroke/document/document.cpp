@@ -20,7 +20,7 @@ Document::Document(const Model& model, const DocumentOptions& options)
       layers_(model.texels.n_slots()),
       masks_(model),
       parts_(model),
-      materials_(options.substrate, layers_),
+      materials_(options.substrate, layers_, options.tip_lags),
       appearance_(model, materials_, layers_, palette_, parts_),
       film_(model),
       history_(options.undo_bytes),

@@ -65,7 +65,7 @@ const HolderOptions& WidthTables::holder(const std::string& brush) {
     HolderOptions options = holder_options(preset(brush));
     // A hand that sets down pressed leans ahead. Copies of the options may outlive the tables.
     const auto tilted = std::make_shared<TiltedTipLag>(preset(brush));
-    options.tip_lag = measure_tip_lag(preset(brush), *tilted);
+    options.tip_lag = tilted->as_held();
     options.tip_lag_change = [tilted](double depth, const Vec2& lean, double turn) {
         return tilted->at(depth, lean, turn);
     };

@@ -43,7 +43,7 @@ class WidthTables {
     /// Returns the widths of a brush, measured when they are first requested, and its preset.
     const LineWidths& of(const std::string& brush);
     const brush::Preset& preset(const std::string& brush);
-    /// Returns options of a holder over a plane that compensates the tip lag (`measure_tip_lag`, `TiltedTipLag`), as
+    /// Returns options of a holder over a plane that compensates the tip lag (`TiltedTipLag`), as
     /// `Materials::holder` does where a stroke is painted.
     const HolderOptions& holder(const std::string& brush);
 

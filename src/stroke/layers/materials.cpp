@@ -9,7 +9,7 @@ namespace tuft::stroke {
 Materials::Brush& Materials::find_brush(const std::string& name) const {
     const auto found = brushes_.find(name);
     if (found != brushes_.end()) return found->second;
-    return brushes_.emplace(name, Brush{brush::load_preset(name), {}, {}}).first->second;
+    return brushes_.emplace(name, Brush{brush::load_preset(name), {}}).first->second;
 }
 
 const ink::Ink& Materials::ink(const std::string& name) const {
@@ -61,13 +61,9 @@ HolderOptions Materials::holder(const std::string& name, const mesh::TriangleMes
     Brush& brush = find_brush(name);
     HolderOptions options = holder_options(brush.preset, mesh);
     if (!compensate_tip_lag) return options;
-    if (!brush.tilted_tip_lag) {
-        auto tilted = std::make_unique<TiltedTipLag>(brush.preset);
-        brush.tip_lag = measure_tip_lag(brush.preset, *tilted);
-        brush.tilted_tip_lag = std::move(tilted);
-    }
-    options.tip_lag = brush.tip_lag;
-    options.tip_lag_change = [tilted = brush.tilted_tip_lag.get()](double depth, const Vec2& lean, double turn) {
+    if (!brush.tip_lag) brush.tip_lag = std::make_unique<TiltedTipLag>(brush.preset, tip_lags_);
+    options.tip_lag = brush.tip_lag->as_held();
+    options.tip_lag_change = [tilted = brush.tip_lag.get()](double depth, const Vec2& lean, double turn) {
         return tilted->at(depth, lean, turn);
     };
     return options;

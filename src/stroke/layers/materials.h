@@ -21,13 +21,14 @@ namespace tuft::stroke {
 /// one, which is read at the first call. Not safe in several threads: reading loads.
 class Materials {
   public:
-    /// `substrate`: name of a shipped one. `layers` must outlive it. Throws `Error` as `ink::load_substrate` does.
-    Materials(const std::string& substrate, const LayerStack& layers)
-        : layers_(layers), substrate_(ink::load_substrate(substrate)) {}
+    /// `substrate`: name of a shipped one. `layers` must outlive it. `tip_lags`: cache of measured tip lags. Throws
+    /// `Error` as `ink::load_substrate` does.
+    Materials(const std::string& substrate, const LayerStack& layers, DiskCache tip_lags = {})
+        : layers_(layers), substrate_(ink::load_substrate(substrate)), tip_lags_(std::move(tip_lags)) {}
 
     /// A preset in the place of others of its name, for strokes painted from now on.
     void use(const ink::Ink& ink) { inks_.insert_or_assign(ink.name, ink); }
-    void use(const brush::Preset& preset) { brushes_.insert_or_assign(preset.name, Brush{preset, {}, {}}); }
+    void use(const brush::Preset& preset) { brushes_.insert_or_assign(preset.name, Brush{preset, {}}); }
     void use(const ink::Substrate& substrate) {
         substrate_ = substrate;
         searches_.reset();
@@ -48,20 +49,21 @@ class Materials {
     const ink::Substrate& substrate() const { return substrate_; }
 
     /// Returns how a holder of this brush is led over `mesh` (`holder_options`); with `compensate_tip_lag` ahead of the
-    /// ink by the tip lag of the brush, measured at the first call (some 50 ms). The options refer to these materials.
+    /// ink by the tip lag of the brush, measured where it is met first (`TiltedTipLag`). The options refer to these
+    /// materials.
     HolderOptions holder(const std::string& brush, const mesh::TriangleMesh& mesh, bool compensate_tip_lag) const;
 
   private:
     struct Brush {
         brush::Preset preset;
-        std::vector<TipLag> tip_lag;  ///< empty: not measured
-        std::unique_ptr<TiltedTipLag> tilted_tip_lag;
+        std::unique_ptr<TiltedTipLag> tip_lag;  ///< at its first use
     };
     std::vector<ink::Pigment> pigments_in_use() const;
     Brush& find_brush(const std::string& name) const;
 
     const LayerStack& layers_;
     ink::Substrate substrate_;
+    DiskCache tip_lags_;
     mutable std::map<std::string, Brush> brushes_;
     mutable std::map<std::string, ink::Ink> inks_;
     mutable std::optional<ink::MixSearches> searches_;  ///< of inks that colours name

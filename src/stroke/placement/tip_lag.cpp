@@ -7,8 +7,10 @@
 
 #include "brush/calibration/sweep.h"
 #include "core/ease.h"
+#include "core/system/build_facts.h"
 #include "core/system/parallel.h"
 #include "stroke/gesture/tractrix.h"
+#include "stroke/placement/tip_lag_code.h"
 
 namespace tuft::stroke {
 namespace {
@@ -40,22 +42,40 @@ double tip_lag_length(std::span<const TipLag> table, double depth) {
 
 }  // namespace
 
+template <class T, class Measure>
+std::vector<T> TiltedTipLag::stored(std::string_view kind, std::span<const std::size_t> place,
+                                    const Measure& measure) const {
+    CacheKey key("tip lag 1");
+    key.add_text(kTipLagCode);
+    const BuildFacts& facts = build_facts();
+    key.add_text(facts.compiler);
+    key.add_text(facts.build_type);
+    brush::add_to(key, preset_);
+    key.add_text(kind);
+    key.add_array(place);
+    std::vector<T> values;
+    if (cache_.read(key, [&](CacheReader& entry) { values = entry.get<T>(); }) && !values.empty()) return values;
+    values = measure();
+    if (cache_.write(key, [&](CacheWriter& entry) { entry.put(values); })) cache_.trim();
+    return values;
+}
+
 const std::vector<Vec2>& TiltedTipLag::node(std::size_t i, std::size_t j, std::size_t turn) {
     const std::lock_guard lock(mutex_);
     std::vector<Vec2>& tip_lags = nodes_[(turn * kAlong.size() + i) * kAcross.size() + j];
-    if (tip_lags.empty()) {
-        const double roll = glm::radians(kTurns[turn]);
-        std::vector<Vec2> measured(kDepths.size());
-        parallel_for(measured.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) {
-                const brush::LinePlace place =
-                    brush::line_place(preset_, kDepths[k] * working_depth(preset_), {kAlong[i], kAcross[j]}, roll);
-                measured[k] = {place.behind, -place.aside};
-            }
-        });
-        tip_lags = std::move(measured);
-    }
-    return tip_lags;
+    if (!tip_lags.empty()) return tip_lags;
+    return tip_lags = stored<Vec2>("node", std::array{i, j, turn}, [&] {
+               const double roll = glm::radians(kTurns[turn]);
+               std::vector<Vec2> measured(kDepths.size());
+               parallel_for(measured.size(), 1, [&](std::size_t begin, std::size_t end) {
+                   for (std::size_t k = begin; k < end; ++k) {
+                       const brush::LinePlace place = brush::line_place(preset_, kDepths[k] * working_depth(preset_),
+                                                                        {kAlong[i], kAcross[j]}, roll);
+                       measured[k] = {place.behind, -place.aside};
+                   }
+               });
+               return measured;
+           });
 }
 
 Vec2 TiltedTipLag::of_node(std::size_t i, std::size_t j, std::size_t turn, double depth) {
@@ -110,29 +130,39 @@ Vec2 TiltedTipLag::at(double depth, const Vec2& lean, double turn) {
     return {sum.x, side * sum.y};
 }
 
-const std::vector<TipLag>& TiltedTipLag::as_held() {
-    std::call_once(measured_, [&] {
-        as_held_ = {{0, 0}};
-        std::vector<double> depths;
-        if (bends_across(preset_)) {
-            for (const double part : kDepths) {
-                const double depth = part * working_depth(preset_);
-                as_held_.push_back({depth, of_lean(depth, {preset_.lean, 0}, kBroad).x});
-            }
-            return;
+std::vector<TipLag> TiltedTipLag::measure_as_held() {
+    std::vector<TipLag> held{{0, 0}};
+    if (bends_across(preset_)) {
+        for (const double part : kDepths) {
+            const double depth = part * working_depth(preset_);
+            held.push_back({depth, of_lean(depth, {preset_.lean, 0}, kBroad).x});
         }
-        for (const double part : {0.05, 0.15, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0})
-            depths.push_back(part * working_depth(preset_));
-        // An edge is set down with its middle on the path.
-        const auto half = lags_by_turn(preset_) ? &brush::SweepRow::drag : &brush::SweepRow::width;
-        for (const brush::SweepRow& row : brush::sweep_depth(preset_, depths))
-            as_held_.push_back({row.depth, std::max(0.0, row.offset + 0.5 * row.*half)});
-    });
+        return held;
+    }
+    std::vector<double> depths;
+    for (const double part : {0.05, 0.15, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0})
+        depths.push_back(part * working_depth(preset_));
+    // An edge is set down with its middle on the path.
+    const auto half = lags_by_turn(preset_) ? &brush::SweepRow::drag : &brush::SweepRow::width;
+    for (const brush::SweepRow& row : brush::sweep_depth(preset_, depths))
+        held.push_back({row.depth, std::max(0.0, row.offset + 0.5 * row.*half)});
+    return held;
+}
+
+const std::vector<TipLag>& TiltedTipLag::as_held() {
+    std::call_once(measured_, [&] { as_held_ = stored<TipLag>("as held", {}, [&] { return measure_as_held(); }); });
     return as_held_;
 }
 
-std::vector<TipLag> measure_tip_lag(const brush::Preset&, TiltedTipLag& tilted) {
-    return tilted.as_held();
+DiskCache shared_tip_lag_cache() {
+    return DiskCache(cache_folder("tip_lags"), std::uintmax_t{4} << 20);
+}
+
+FollowedTurn::FollowedTurn(double tuft_length, double turn) : lambda_(kFallsOver * tuft_length), turn_(turn) {}
+
+double FollowedTurn::follow(double turn, double gone) {
+    const double left = std::remainder(turn - turn_, std::numbers::pi);
+    return turn_ += left * -std::expm1(-gone / lambda_);
 }
 
 namespace {
@@ -281,21 +311,6 @@ void set_down_plumb(StrokeSamples& trace, const HolderOptions& options) {
     }
 }
 
-/// Turn of a wide ferrule from its path as its hair has followed it: hair falls over from its edge to its broad side,
-/// and back, while it is dragged by about its lag. With Δ what is left of the turn, mod π, and s the path's length,
-/// dΔ/ds = −Δ/λ.
-class FollowedTurn {
-  public:
-    FollowedTurn(double string, double turn) : string_(string), turn_(turn) {}
-    double follow(double turn, double gone) {
-        const double left = std::remainder(turn - turn_, std::numbers::pi);
-        return turn_ += left * -std::expm1(-gone / string_);
-    }
-
-  private:
-    double string_, turn_;
-};
-
 /// Of a direction of the path, anticlockwise, radians.
 double angle_of(const Vec2& ahead) {
     return std::atan2(-ahead.y, ahead.x);
@@ -339,7 +354,7 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     const bool leans = options.lean > kLean && glm::dot(trace.samples.front().tilt, ahead) > kLean;
     if ((pressed || options.blade_landing > 0) && ahead != Vec2(0) && !leans) lean_ahead(trace, options, ahead);
     Vec2 dragged = first - options.tip_lag_turn * ahead, before = first;
-    FollowedTurn turn(kFallsOver * options.tuft_length, trace.samples.front().roll - angle_of(ahead));
+    FollowedTurn turn(options.tuft_length, trace.samples.front().roll - angle_of(ahead));
     for (StrokeSample& s : trace.samples) {
         const Vec2 p(s.position);
         dragged = drag_string(dragged, before, p, options.tip_lag_turn);

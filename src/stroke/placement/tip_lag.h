@@ -6,9 +6,11 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "brush/preset/preset.h"
+#include "core/files/disk_cache.h"
 #include "core/geometry/types.h"
 #include "stroke/gesture/tractrix.h"
 #include "stroke/placement/placement.h"
@@ -22,13 +24,15 @@ namespace tuft::stroke {
 /// side from the path, measured on steady strokes at a grid of leans, turns and depths. A node of the grid is measured
 /// at its first use: 25 ms, of a flat 0.5 s, of a fan 1.5 s of computing, its depths side by side. Leans up to 0.05 rad
 /// change nothing, as a hand does not hold a brush more upright; from 0.15 rad on the change is full. Of a brush that
-/// `bends_across` every lean counts, from that of its make. Thread-safe.
+/// `bends_across` every lean counts, from that of its make. Nodes in the cache are those that the same sources
+/// measured of the same preset: the values are the same to the bit. Thread-safe.
 ///
 /// An upright flat on its edge keeps its hair under it; turned by 20 degrees or more it lies down on its broad side and
 /// trails twice as far. What a lean adds is measured on the edge and across, and eased from one to the other.
 class TiltedTipLag {
   public:
-    explicit TiltedTipLag(brush::Preset preset) : preset_(std::move(preset)) {}
+    explicit TiltedTipLag(brush::Preset preset, DiskCache cache = {})
+        : preset_(std::move(preset)), cache_(std::move(cache)) {}
 
     /// Returns the additional displacement of the hand, metres ahead along the path and to its left, that puts the line
     /// onto the path. `lean`: radians along the path and to its left, up ∝ normal + tan(lean.x) ahead + tan(lean.y)
@@ -36,7 +40,9 @@ class TiltedTipLag {
     /// anticlockwise; both faces are alike.
     Vec2 at(double depth, const Vec2& lean, double turn = 0);
     /// Returns the tip lag that `at` is the change from: upright, the broad side along the path; of a brush that
-    /// `bends_across`, leaning as its make does, the broad side across.
+    /// `bends_across`, leaning as its make does, the broad side across. By depths up to the working depth: the distance
+    /// from the foot of the holder's axis back to the widest place of the steady contact patch, which lies half a
+    /// line's width behind its end (`brush::sweep_depth`). Measured at the first call: about 50 ms; of a fan 1.5 s.
     const std::vector<TipLag>& as_held();
 
   private:
@@ -46,6 +52,9 @@ class TiltedTipLag {
     static constexpr std::array kDepths{0.05, 0.15, 0.3, 0.5, 0.7, 1.0};  // of the working depth
     static constexpr std::size_t kEdge = 0, kBroad = kTurns.size() - 1, kUpright = 3;  // of `kTurns`; of `kAlong`
 
+    template <class T, class Measure>
+    std::vector<T> stored(std::string_view kind, std::span<const std::size_t> place, const Measure& measure) const;
+    std::vector<TipLag> measure_as_held();
     const std::vector<Vec2>& node(std::size_t i, std::size_t j, std::size_t turn);
     Vec2 of_node(std::size_t i, std::size_t j, std::size_t turn, double depth);
     Vec2 of_lean(double depth, const Vec2& lean, std::size_t turn);
@@ -53,18 +62,15 @@ class TiltedTipLag {
     Vec2 change_by_turn(double depth, double turn);
 
     brush::Preset preset_;
+    DiskCache cache_;
     std::mutex mutex_;  // of `nodes_` while one is measured; measured ones do not change
     std::array<std::vector<Vec2>, kAlong.size() * kAcross.size() * kTurns.size()> nodes_;  // ahead and left by depth
     std::once_flag measured_;
     std::vector<TipLag> as_held_;
 };
 
-/// Measures the tip lag of a brush at depths up to its working depth: the distance from the foot of the holder's axis
-/// back to the widest place of the steady contact patch, which lies half a line's width behind its end
-/// (`brush::sweep_depth`). Of a brush that `bends_across` it is that of a holder that leans as its make does, with the
-/// broad side across the path. It is `TiltedTipLag::as_held` of `tilted`, which is of the same preset. Cost: about 50
-/// ms; of a fan 1.5 s.
-std::vector<TipLag> measure_tip_lag(const brush::Preset& preset, TiltedTipLag& tilted);
+/// Returns the cache of the user's measured tip lags: `tuft/tip_lags` in $XDG_CACHE_HOME or ~/.cache, 4 MiB.
+DiskCache shared_tip_lag_cache();
 
 /// Returns the tip lag at one point of a path, metres to the right and down. `tilt` and `roll`: radians, as in
 /// `SurfaceSample`; `ahead`: direction of the path in the same axes, up to 1 long. With `options.across` it is the tip
@@ -84,6 +90,21 @@ double lean_string(const HolderOptions& options);
 /// the direction of a point dragged behind the trace on a `lean_string`, taut from the first touch; of a dot, with
 /// `options.across`, that of the ferrule's y.
 StrokeSamples lean_holder(StrokeSamples trace, const HolderOptions& options);
+
+/// Turn of a wide ferrule from its path as its hair has followed it: hair falls over from its edge to its broad side,
+/// and back, while it is dragged by about its lag. With Δ what is left of the turn, mod π, and s the path's length,
+/// dΔ/ds = −Δ/λ, λ half the tuft's length.
+class FollowedTurn {
+  public:
+    /// `turn`: radians, in which the hair lies at first.
+    FollowedTurn(double tuft_length, double turn);
+    double turn() const { return turn_; }
+    /// Returns the turn in which the hair lies after a further `gone` metres at a ferrule turned by `turn` radians.
+    double follow(double turn, double gone);
+
+  private:
+    double lambda_, turn_;
+};
 
 /// Speed of setting down, ahead and down together: over the speed of the trace, and the least speed of the trace that
 /// is taken for it, m/s.

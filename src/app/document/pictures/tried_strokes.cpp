@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "brush/preset/preset.h"
+#include "stroke/placement/tip_lag.h"
 
 namespace tuft::app {
 namespace {
@@ -79,7 +80,8 @@ TriedStrokes::Painted TriedStrokes::paint(Wish wish) const {
         if (cache_.read(key, take)) return out;
         out.missing = !out.wish.to_paint;
         if (out.missing) return out;
-        out.rgb = pictures::paint_tried_stroke(preset, [this](std::string_view, double) { return !stop_.load(); }).rgb;
+        const auto progress = [this](std::string_view, double) { return !stop_.load(); };
+        out.rgb = pictures::paint_tried_stroke(preset, progress, stroke::shared_tip_lag_cache()).rgb;
         cache_.write(key, [&](CacheWriter& to) { to.put(out.rgb); });
     } catch (const Cancelled&) {
         out.stopped = true;

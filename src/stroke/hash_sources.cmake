@@ -1,4 +1,4 @@
-# Writes SOURCE, which defines stroke::kPreparationCode: the SHA-256 over names and contents of FOLDERS below ROOT.
+# Writes SOURCE, which defines stroke::NAME of HEADER: the SHA-256 over names and contents of FOLDERS below ROOT.
 set(all "")
 foreach(folder ${FOLDERS})
   file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/${folder}/*.h ${ROOT}/${folder}/*.cpp)
@@ -10,7 +10,7 @@ foreach(folder ${FOLDERS})
 endforeach()
 string(SHA256 hash "${all}")
 file(CONFIGURE OUTPUT ${SOURCE} CONTENT [[
-#include "stroke/surface/preparation_code.h"
+#include "@HEADER@"
 
-const char* const tuft::stroke::kPreparationCode = "@hash@";
+const char* const tuft::stroke::@NAME@ = "@hash@";
 ]] @ONLY)
