@@ -6,6 +6,7 @@
 
 #include "atlas/texels/log_map.h"
 #include "footprint/outline/picture.h"
+#include "footprint/stamp/neighbourhood.h"
 #include "footprint/stamp/occluded.h"
 #include "footprint/stamp/quadrants.h"
 #include "footprint/stamp/sweep.h"
@@ -14,8 +15,7 @@
 namespace tuft::footprint {
 namespace {
 
-constexpr float kSureCos = 0.8f, kSureNormal = 0.3f;  // clusters that surely face the stamp
-constexpr double kShadow = 0.1;                       // of its distance: what a cluster behind an opening may be off by
+constexpr double kShadow = 0.1;  // of its distance: what a cluster behind an opening may be off by
 
 /// Frame of texels whose log map in `frame` is at `place` + turn · (u, v) in the stamp.
 ClusterFrame picture_frame(const Frame& frame, const Vec2& place, const Vec2& turn, const Footprint& footprint) {
@@ -62,32 +62,10 @@ void set_sub_poses(const Footprint& footprint, const Motion& motion, double texe
     }
 }
 
-Reach reach_of(const Footprint& footprint, const Motion& motion) {
-    Reach reach;
-    const double swing = std::abs(motion.turn) * footprint.radius;
-    reach.origin = Vec3f(footprint.frame.origin);
-    reach.normal = Vec3f(footprint.frame.n);
-    reach.radius = static_cast<float>(footprint.radius + glm::length(motion.shift));
-    const Vec2 hi = footprint.lo + footprint.cell * Vec2(footprint.width, footprint.height);
-    reach.lo = Vec2f(footprint.lo - glm::max(motion.shift, Vec2{0}) - swing);
-    reach.hi = Vec2f(hi - glm::min(motion.shift, Vec2{0}) + swing);
-    return reach;
-}
-
-/// Distance between where one stamp frame and the walk put a cluster's centre, metres.
-double disagreement(const Frame& frame, const atlas::TexelCluster& cluster, const PlanScratch::Node& n) {
-    if (glm::dot(Vec3(cluster.normal), frame.n) <= atlas::kLogMapMinCos) return std::numeric_limits<double>::infinity();
-    return glm::length(atlas::log_map(frame, Vec3(cluster.centre), Vec3(cluster.normal)) - Vec2(n.u, n.v));
-}
-
-bool surely_faces(const atlas::TexelCluster& cluster, const Vec3f& normal) {
-    return cluster.cone_cos > kSureCos && glm::dot(cluster.normal, normal) > kSureNormal;
-}
-
-/// Finds the coverage of the discs that hold the texels of the reached clusters in either mode and in all poses, with
-/// the next cell; and the disagreement of the modes.
-void find_cluster_coverage(const atlas::ClusterGraph& graph, const Footprint& footprint, const Motion& motion, Isa isa,
-                           PlanScratch& scratch) {
+/// Finds the discs that hold the texels of the reached clusters in either mode and in all poses, with the next cell;
+/// and the disagreement of the modes.
+void find_discs(const atlas::ClusterGraph& graph, const Footprint& footprint, const Motion& motion,
+                PlanScratch& scratch) {
     const auto cell = static_cast<float>(footprint.cell);
     const Vec2f zero = Vec2f(footprint.lo / footprint.cell + 0.5);
     const Vec2f half_shift = Vec2f(0.5 * motion.shift);
@@ -103,24 +81,21 @@ void find_cluster_coverage(const atlas::ClusterGraph& graph, const Footprint& fo
         const float reach = r + static_cast<float>(scratch.disagreement.back()) + half_length + swing;
         scratch.discs.add(position / cell - zero, reach / cell + 1.5f);
     }
-    scratch.tally.find_coverage(scratch.discs, isa);
 }
 
-/// Lists the reached clusters that the picture may cover, with its coverage there as far as it is known, and takes the
-/// greatest disagreement; scratch.reached is left with those listed.
-void list_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint, const Motion& motion,
-                   PlanScratch& scratch, StampJobs& jobs) {
+/// Lists the reached clusters that the picture may cover, with its coverage there as far as it is known;
+/// scratch.reached and scratch.disagreement are left with those listed.
+void list_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint, PlanScratch& scratch,
+                   StampJobs& jobs) {
     scratch.tally.count(footprint);
-    find_cluster_coverage(graph, footprint, motion, jobs.isa, scratch);
+    scratch.tally.find_coverage(scratch.discs, jobs.isa);
     const Vec3f normal(footprint.frame.n);
     std::size_t n = 0;
     jobs.frames.reserve(scratch.reached.size());
     for (std::size_t k = 0; k < scratch.reached.size(); ++k) {
         const std::uint32_t i = scratch.reached[k];
         const atlas::TexelCluster& cluster = graph.clusters[i];
-        const PlanScratch::Node& at = scratch.nodes[i];
         ClusterFrame f;
-        const double off = scratch.disagreement[k];
         if (jobs.mapping == Mapping::log) {
             const Cover cover = scratch.discs.cover(k);
             if (cover == Cover::empty) continue;
@@ -129,9 +104,6 @@ void list_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint,
                 f.partial_quadrants = 0;
             }
         }
-        // Behind an opening the walk itself is in doubt: it went round.
-        if (at.lit || off > kShadow * static_cast<double>(glm::length(Vec2f{at.u, at.v})))
-            jobs.discrepancy = std::max(jobs.discrepancy, off);
         if (jobs.tiles.empty() || jobs.tiles.back().slot != cluster.slot)
             jobs.tiles.push_back({cluster.slot, static_cast<std::uint32_t>(jobs.frames.size()), 0});
         ++jobs.tiles.back().count;
@@ -139,10 +111,22 @@ void list_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint,
         f.first_row = cluster.first_row;
         f.last_row = cluster.last_row;
         jobs.frames.push_back(f);
+        scratch.disagreement[n] = scratch.disagreement[k];
         scratch.reached[n++] = i;
     }
     scratch.reached.resize(n);
-    jobs.discrepancy /= std::max(footprint.radius, 1e-12);
+}
+
+/// Greatest disagreement over the listed clusters, over the radius.
+double discrepancy_of(const Footprint& footprint, const PlanScratch& scratch) {
+    double most = 0;
+    for (std::size_t k = 0; k < scratch.reached.size(); ++k) {
+        const PlanScratch::Node& at = scratch.nodes[scratch.reached[k]];
+        const double off = scratch.disagreement[k];
+        // Behind an opening the walk itself is in doubt: it went round.
+        if (at.lit || off > kShadow * static_cast<double>(glm::length(Vec2f{at.u, at.v}))) most = std::max(most, off);
+    }
+    return most / std::max(footprint.radius, 1e-12);
 }
 
 /// Stretches the picture's axes across the radial direction.
@@ -207,27 +191,11 @@ void classify_clusters(const Surface& surface, const Footprint& footprint, const
         classify_quadrants(scratch.discs, kQuadrants * n, jobs.frames[scratch.queried[n]]);
 }
 
-/// Start of the walk, in the tangent plane of the surface itself: the stamp's normal may be a mean over a crease.
-Start start_of(const Surface& surface, const Footprint& footprint, const atlas::TexelRef& contact) {
-    Start start;
-    start.triangle = footprint.triangle;
-    start.cluster =
-        surface.texels.cluster_start[contact.slot] + surface.texels.tiles[contact.slot].cluster[contact.texel];
-    const atlas::TexelCluster& cluster = surface.clusters.clusters[start.cluster];
-    Frame& frame = start.frame;
-    frame = footprint.frame;
-    frame.n = glm::normalize(Vec3(surface.texels.normal(contact.slot, contact.texel)));
-    frame.t = parallel_transport(footprint.frame.t, footprint.frame.n, frame.n);
-    frame.b = glm::cross(frame.n, frame.t);
-    start.place = Vec2f(atlas::log_map(frame, Vec3(cluster.centre), Vec3(cluster.normal)));
-    start.turn = Vec2f(atlas::transport_direction(frame, Vec3(cluster.tangent), Vec3(cluster.normal)));
-    return start;
-}
-
 }  // namespace
 
 StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const Motion& motion,
-                     const StampOptions& options, PlanScratch& scratch, StampJobs recycled) {
+                     const StampOptions& options, PlanScratch& scratch, StampJobs recycled,
+                     const Neighbourhood& around) {
     StampJobs jobs = std::move(recycled);
     jobs.frames.clear();
     jobs.tiles.clear();
@@ -242,18 +210,28 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
         atlas::texel_at(surface.mesh, surface.atlas, surface.texels, footprint.triangle, footprint.frame.origin);
     if (!contact.valid()) return jobs;
     const Reach reach = reach_of(footprint, motion);
-    const Start start = start_of(surface, footprint, contact);
-    const std::size_t occluded = walk_clusters(surface.clusters, reach, start, scratch);
-    resolve_occluded(surface, reach, start, occluded, scratch);
+    jobs.stamp_frame = picture_frame(footprint.frame, Vec2{0}, Vec2{1, 0}, footprint);
+    const bool shared =
+        options.mapping == Mapping::log &&
+        std::binary_search(around.clusters.begin(), around.clusters.end(), cluster_of(surface.texels, contact));
+    if (shared) {
+        reach_clusters(around, footprint, motion, reach, jobs.stamp_frame, scratch);
+        scratch.disagreement.assign(scratch.reached.size(), 0.0);
+    } else {
+        const Start start = start_of(surface, footprint, contact);
+        const std::size_t occluded = walk_clusters(surface.clusters, reach, start, scratch);
+        resolve_occluded(surface, reach, start, occluded, scratch);
+        find_discs(surface.clusters, footprint, motion, scratch);
+    }
     if (scratch.reached.empty()) return jobs;
 
-    jobs.stamp_frame = picture_frame(footprint.frame, Vec2{0}, Vec2{1, 0}, footprint);
     const double texel_size = surface.texels.texel_size;
     const double wanted = motion.turn == 0 ? count_sub_poses(footprint, motion, texel_size, options) : 0;
     const bool takes_max = options.max_weight > 0 && wanted > 0;
     const bool swept = takes_max || (options.prefix_sums > 0 && wanted >= options.prefix_sums);
     if (!swept) set_sub_poses(footprint, motion, texel_size, options, jobs.sub_poses);
-    list_clusters(surface.clusters, footprint, motion, scratch, jobs);
+    list_clusters(surface.clusters, footprint, scratch, jobs);
+    if (!shared) jobs.discrepancy = discrepancy_of(footprint, scratch);
     if (jobs.discrepancy > std::min(options.enter, options.leave))
         place_clusters(surface.clusters, footprint, scratch, jobs);
     classify_clusters(surface, footprint, motion, options, scratch, jobs);

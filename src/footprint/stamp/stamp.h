@@ -162,11 +162,20 @@ struct PlanScratch {
     std::vector<std::uint32_t> reached;                 ///< clusters that the picture reaches, ascending
     BlockTally tally;                                   ///< of the picture
     Discs discs;                                        ///< of clusters, then of quadrants
+    std::vector<float> place_u, place_v;                ///< cells, by cluster of a neighbourhood
     std::vector<double> disagreement;                   ///< metres, by reached cluster, between the two mappings
     std::vector<std::uint32_t> queried;                 ///< frames whose quadrants are queried
     SweepScratch sweep;
     mesh::ExactGeodesics geodesics;
     TriangleCache triangle_cache;
+};
+
+/// Clusters round several stamps, where the surface is smooth; see neighbourhood.h.
+struct Neighbourhood {
+    std::vector<std::uint32_t> clusters;  ///< ascending; empty: none known, each stamp searches
+    /// Of each cluster, and zeros up to whole vectors: centre (metres) and unit normal, world; radius of a disc that
+    /// holds its texels, metres.
+    std::vector<float> px, py, pz, nx, ny, nz, radius;
 };
 
 /// Buffer for an unpacked tile; one per thread.
@@ -177,9 +186,11 @@ struct Unpacked {
 
 /// Plans a stamp: finds the clusters within the footprint that are connected to the contact point and do not face
 /// away from it, and their positions in the picture. Cost is proportional to the footprint's area in texels and
-/// does not depend on the mesh. `recycled` lends the memory of an earlier stamp; its contents are ignored.
+/// does not depend on the mesh. `recycled` lends the memory of an earlier stamp; its contents are ignored. `around`: of
+/// stamps of which this is one, found with the same options; empty: the stamp searches by itself.
 StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const Motion& motion,
-                     const StampOptions& options, PlanScratch& scratch, StampJobs recycled = {});
+                     const StampOptions& options, PlanScratch& scratch, StampJobs recycled = {},
+                     const Neighbourhood& around = {});
 
 /// Chooses one frame for all clusters or one for each, with hysteresis. `piecewise_before` is the mode of the
 /// previous stamp of the stroke (false for the first). Returns the mode.

@@ -27,6 +27,8 @@ constexpr float kCorner = 0.8f;                    // of a hop, what it adds to 
 constexpr float kBeside = 1.6f;                    // cluster radii: the source may lie beside the cluster itself
 constexpr float kBetween = 0.8f;                   // of the distance it began at: may lead between two neighbours
 
+constexpr float kSureCos = 0.8f, kSureNormal = 0.3f;  // clusters that surely face the stamp
+
 constexpr std::uint32_t kMostEdges = 64;  // of a cluster that are looked at
 
 /// Signed angle from p to q, |p||q| = `lengths`, within 5e-5 of itself below 62°; beyond, not a
@@ -37,12 +39,19 @@ float angle(const Vec2f& p, const Vec2f& q, float lengths) {
     return 2 * t * (105 + 55 * t2) / (105 + t2 * (90 + 9 * t2));
 }
 
+/// What clusters of smooth surface hold to.
+struct SmoothLimits {
+    const Frame& frame;
+    double most_off;
+};
+
 struct Walk {
     const atlas::ClusterGraph& graph;
     PlanScratch& scratch;
     const Reach& reach;
-    std::uint32_t start;       ///< the cluster touched
-    std::size_t occluded = 0;  ///< clusters that no straight path leads to
+    std::uint32_t start;                   ///< the cluster touched
+    const SmoothLimits* smooth = nullptr;  ///< the walk ends where the surface is not
+    std::size_t occluded = 0;              ///< clusters that no straight path leads to
 
     PlanScratch::Node& node(std::uint32_t cluster) { return node_of(scratch, cluster); }
 
@@ -296,9 +305,14 @@ struct Walk {
         }
     }
 
+    bool is_smooth(const atlas::TexelCluster& cluster, const PlanScratch::Node& n) const {
+        return n.state == kFinal && occluded == 0 && n.lit && cluster.outward == Vec3f{0} &&
+               surely_faces(cluster, reach.normal) && disagreement(smooth->frame, cluster, n) <= smooth->most_off;
+    }
+
     /// Dijkstra over the clusters by distance from the stamp's origin; leaves those that the
-    /// picture reaches in scratch.reached, in order of their numbers.
-    void run() {
+    /// picture reaches in scratch.reached, in order of their numbers. Returns false where it ends early.
+    bool run() {
         scratch.reached.clear();
         while (!scratch.heap.empty()) {
             std::pop_heap(scratch.heap.begin(), scratch.heap.end(), std::greater<>());
@@ -318,16 +332,50 @@ struct Walk {
                 continue;
             }
             n.state = kOutside;
-            if (distance - kClusterSlack * cluster.radius > reach.radius || faces_away(reach, cluster)) continue;
-            n.state = kFinal;
+            if (distance - kClusterSlack * cluster.radius > reach.radius) continue;
+            if (!faces_away(reach, cluster)) n.state = kFinal;
+            if (smooth && !is_smooth(cluster, n)) return false;
+            if (n.state != kFinal) continue;
             if (in_picture(reach, cluster, n)) scratch.reached.push_back(i);
             push_neighbours(i, n);
         }
         std::sort(scratch.reached.begin(), scratch.reached.end());
+        return true;
     }
 };
 
 }  // namespace
+
+Reach reach_of(const Footprint& footprint, const Motion& motion) {
+    Reach reach;
+    const double swing = std::abs(motion.turn) * footprint.radius;
+    reach.origin = Vec3f(footprint.frame.origin);
+    reach.normal = Vec3f(footprint.frame.n);
+    reach.radius = static_cast<float>(footprint.radius + glm::length(motion.shift));
+    const Vec2 hi = footprint.lo + footprint.cell * Vec2(footprint.width, footprint.height);
+    reach.lo = Vec2f(footprint.lo - glm::max(motion.shift, Vec2{0}) - swing);
+    reach.hi = Vec2f(hi - glm::min(motion.shift, Vec2{0}) + swing);
+    return reach;
+}
+
+std::uint32_t cluster_of(const atlas::TexelMap& texels, const atlas::TexelRef& texel) {
+    return texels.cluster_start[texel.slot] + texels.tiles[texel.slot].cluster[texel.texel];
+}
+
+Start start_of(const Surface& surface, const Footprint& footprint, const atlas::TexelRef& contact) {
+    Start start;
+    start.triangle = footprint.triangle;
+    start.cluster = cluster_of(surface.texels, contact);
+    const atlas::TexelCluster& cluster = surface.clusters.clusters[start.cluster];
+    Frame& frame = start.frame;
+    frame = footprint.frame;
+    frame.n = glm::normalize(Vec3(surface.texels.normal(contact.slot, contact.texel)));
+    frame.t = parallel_transport(footprint.frame.t, footprint.frame.n, frame.n);
+    frame.b = glm::cross(frame.n, frame.t);
+    start.place = Vec2f(atlas::log_map(frame, Vec3(cluster.centre), Vec3(cluster.normal)));
+    start.turn = Vec2f(atlas::transport_direction(frame, Vec3(cluster.tangent), Vec3(cluster.normal)));
+    return start;
+}
 
 PlanScratch::Node& node_of(PlanScratch& scratch, std::uint32_t cluster) {
     PlanScratch::Node& n = scratch.nodes[cluster];
@@ -337,6 +385,15 @@ PlanScratch::Node& node_of(PlanScratch& scratch, std::uint32_t cluster) {
         n.key = std::numeric_limits<float>::infinity();
     }
     return n;
+}
+
+double disagreement(const Frame& frame, const atlas::TexelCluster& cluster, const PlanScratch::Node& n) {
+    if (glm::dot(Vec3(cluster.normal), frame.n) <= atlas::kLogMapMinCos) return std::numeric_limits<double>::infinity();
+    return glm::length(atlas::log_map(frame, Vec3(cluster.centre), Vec3(cluster.normal)) - Vec2(n.u, n.v));
+}
+
+bool surely_faces(const atlas::TexelCluster& cluster, const Vec3f& normal) {
+    return cluster.cone_cos > kSureCos && glm::dot(cluster.normal, normal) > kSureNormal;
 }
 
 bool faces_away(const Reach& reach, const atlas::TexelCluster& cluster) {
@@ -379,6 +436,15 @@ std::size_t walk_clusters(const atlas::ClusterGraph& graph, const Reach& reach, 
     walk.push(place_start(scratch, start), start.cluster, 0);
     walk.run();
     return walk.occluded;
+}
+
+bool walk_smooth(const atlas::ClusterGraph& graph, const Reach& reach, const Start& start, const Frame& frame,
+                 double most_off, PlanScratch& scratch) {
+    begin_walk(scratch, graph.n_clusters());
+    const SmoothLimits limits{frame, most_off};
+    Walk walk{graph, scratch, reach, start.cluster, &limits};
+    walk.push(place_start(scratch, start), start.cluster, 0);
+    return walk.run();
 }
 
 }  // namespace tuft::footprint

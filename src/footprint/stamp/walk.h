@@ -27,12 +27,26 @@ struct Start {
     Vec2f turn{1, 0};                ///< cosine and sine of the rotation of its frame there
 };
 
+/// Returns the extent of a stamp, and the start of its search from the texel under its contact point: in the tangent
+/// plane of the surface itself, since the stamp's normal may be a mean over a crease.
+Reach reach_of(const Footprint& footprint, const Motion& motion);
+Start start_of(const Surface& surface, const Footprint& footprint, const atlas::TexelRef& contact);
+
+/// Returns the cluster of a texel.
+std::uint32_t cluster_of(const atlas::TexelMap& texels, const atlas::TexelRef& texel);
+
 /// Dijkstra search over the clusters by path length from the stamp's origin, along straightest paths. Stores the
 /// clusters that the picture reaches in scratch.reached, ascending, and the positions of all visited ones in
 /// scratch.nodes. Returns the number of clusters without a straight path over their neighbours: the occluded ones,
 /// where the surface folds. Cost: 0.2 µs a cluster.
 std::size_t walk_clusters(const atlas::ClusterGraph& graph, const Reach& reach, const Start& start,
                           PlanScratch& scratch);
+
+/// The same over smooth surface: true when the log map of `frame` puts every visited cluster within `most_off` metres
+/// of where the walk puts it, none is occluded or faces away, and no open border is near. False as soon as one is found
+/// that does not fit; scratch.reached is incomplete then.
+bool walk_smooth(const atlas::ClusterGraph& graph, const Reach& reach, const Start& start, const Frame& frame,
+                 double most_off, PlanScratch& scratch);
 
 /// States of a cluster, shared with occluded.h.
 enum : std::uint8_t { kOpen, kFinal, kOutside };
@@ -41,6 +55,10 @@ void begin_walk(PlanScratch& scratch, std::size_t n_clusters);
 /// Returns the node of a cluster; `place_start` also sets its position.
 PlanScratch::Node& node_of(PlanScratch& scratch, std::uint32_t cluster);
 PlanScratch::Node& place_start(PlanScratch& scratch, const Start& start);
+/// Distance between where the log map of `frame` and the walk put a cluster's centre, metres.
+double disagreement(const Frame& frame, const atlas::TexelCluster& cluster, const PlanScratch::Node& n);
+/// `surely_faces`: no texel of the cluster faces away from `normal`, nor from one that is some degrees off.
+bool surely_faces(const atlas::TexelCluster& cluster, const Vec3f& normal);
 /// `faces_away`: the cluster is never inked. `in_picture`: the cluster's disc intersects the picture.
 bool faces_away(const Reach& reach, const atlas::TexelCluster& cluster);
 bool in_picture(const Reach& reach, const atlas::TexelCluster& cluster, const PlanScratch::Node& n);

@@ -17,6 +17,7 @@ constexpr std::size_t kTilesPerReport = 512;
 StampBatch::StampBatch(StampTarget& target, const footprint::StampOptions& options)
     : target_(target), options_(options), plans_(kStamps) {
     batch_.reserve(kStamps);
+    moved_.reserve(kStamps);
 }
 
 bool StampBatch::add(Stamp stamp) {
@@ -27,11 +28,18 @@ bool StampBatch::add(Stamp stamp) {
 void StampBatch::plan() {
     const footprint::Surface surface = target_.model().surface();
     const double texel = target_.texels().texel_size;
+    moved_.clear();
+    for (const Stamp& stamp : batch_) moved_.push_back({stamp.footprint, joined_motion(stamp, texel)});
+    {
+        PlanScratchPool::Lease scratch(target_.scratch());
+        around_ = footprint::find_neighbourhood(surface, moved_, options_, scratch, std::move(around_));
+    }
     const auto plan_some = [&](std::size_t begin, std::size_t end) {
         PlanScratchPool::Lease scratch(target_.scratch());
         for (std::size_t i = begin; i < end; ++i)
-            plans_[i] = footprint::plan_stamp(surface, batch_[i].footprint, joined_motion(batch_[i], texel),
-                                              stamp_options(options_, batch_[i]), scratch, std::move(plans_[i]));
+            plans_[i] =
+                footprint::plan_stamp(surface, batch_[i].footprint, moved_[i].motion,
+                                      stamp_options(options_, batch_[i]), scratch, std::move(plans_[i]), around_);
     };
     parallel_for(batch_.size(), 2, std::ref(plan_some));  // by reference: a loop allocates nothing
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/system/progress.h"
+#include "footprint/stamp/neighbourhood.h"
 #include "ink/exchange/blot.h"
 #include "ink/exchange/erase.h"
 #include "stroke/contact/stamp.h"
@@ -47,6 +48,8 @@ class StampBatch {
     StampTarget& target_;
     footprint::StampOptions options_;
     std::vector<Stamp> batch_;
+    std::vector<footprint::MovedFootprint> moved_;  ///< one per stamp
+    footprint::Neighbourhood around_;
     std::vector<footprint::StampJobs> plans_;  ///< one per place in the batch; memory is reused
     bool piecewise_ = false;
     // Of the present batch; their memory is reused.
