@@ -1,5 +1,3 @@
-#include "ink/exchange/deposit.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "core/random.h"
 #include "ink/composite/composite.h"
+#include "ink/exchange/tile_deposit.h"
 #include "texels.h"
 
 namespace tuft::ink {
@@ -133,6 +132,36 @@ TEST(Deposit, GivenInkIsWhatTheTexelsGained) {
     const double strength = static_cast<double>(mix[0]) + static_cast<double>(mix[1]);
     EXPECT_NEAR(given * strength, on_texels, 1e-13 * on_texels);
     EXPECT_NEAR(red / on_texels, 1.0 / 3, 1e-6);
+}
+
+TEST(Deposit, StampsOnOneTileLeaveAndGiveWhatTheyDoOneByOne) {
+    // Alone on the tile from the second stamp on; from the 20th with another ink; then that one's mixture with the
+    // first.
+    const Texels tone = random_texels(7, 0.9, 1.1);
+    Canvas one_by_one(1), together(1);
+    for (Canvas* canvas : {&one_by_one, &together})
+        for (const char* name : {"black", "white"}) mix_of(*canvas, plain(name));
+    const Mix black = mix_of(together, plain("black")), white = mix_of(together, plain("white"));
+    Mix grey = black;
+    grey[1] = 1 - (grey[0] = 0.6f);
+    TileDeposit deposits(together, 0, kArea, tone);
+    double given = 0;
+    for (int i = 0; i < 60; ++i) {
+        const Texels coverage = i % 5 == 3 ? constant(1) : random_texels(i, 0, 1);
+        const DepositParams params{.mix = i < 20   ? black
+                                          : i < 40 ? white
+                                                   : grey,
+                                   .target = 1.8f + 0.01f * static_cast<float>(i),
+                                   .capacity = 3,
+                                   .extinction = i % 2 == 0 ? 0.7f : 0.0f};
+        const DepositLaw law = deposit_law(params, 2e-5);
+        given += deposit(one_by_one, {0, coverage, kArea}, params, law, tone);
+        deposits.add(coverage, params, law);
+    }
+    // Both sum the stored differences in double precision.
+    EXPECT_NEAR(deposits.finish(), given, 1e-13 * given);
+    EXPECT_TRUE(together.same_contents(one_by_one));
+    EXPECT_EQ(together.take_dirty(), one_by_one.take_dirty());
 }
 
 TEST(Deposit, AnotherInkGoesOnTopUpToTheCapacity) {

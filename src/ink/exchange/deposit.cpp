@@ -9,6 +9,7 @@
 #include "core/simd.h"
 #include "ink/canvas/tile_store.h"
 #include "ink/elementary.h"
+#include "ink/exchange/tile_deposit.h"
 #include "ink/spectra/colorimetry.h"
 
 namespace tuft::ink {
@@ -83,11 +84,10 @@ struct Alone {
 };
 
 /// The film of such an ink in one pass: goals, increments and what is stored, as `law_goals`,
-/// `increments` and `store_change` have them, to the bit. Returns Σ (stored change) · area;
-/// `wanted`: whether any increment is positive. `tone`: of `deposit`.
-TUFT_CLONES double deposit_alone(float* __restrict w, const float* __restrict coverage, const float* __restrict area,
-                                 const float* __restrict tone, const Alone& law, int n, bool& wanted) {
-    double sum[kRow] = {};
+/// `increments` and `store_change` have them, to the bit. Returns whether any increment is positive. `tone`: of
+/// `deposit`.
+TUFT_CLONES bool deposit_alone(float* __restrict w, const float* __restrict coverage, const float* __restrict tone,
+                               const Alone& law, int n) {
     alignas(64) float goal[kRow];
     const float inverse_part = 1.0f / law.part;
     int any = 0;
@@ -106,13 +106,21 @@ TUFT_CLONES double deposit_alone(float* __restrict w, const float* __restrict co
             const float limit = wants < free ? wants : free;
             const float lack = limit - film;
             const float dw = (lack > 0 ? lack : 0) * law.rate;
-            const float after = before + law.part * dw;
             any |= dw > 0;
-            w[row + t] = after;
-            sum[t] += (static_cast<double>(after) - static_cast<double>(before)) * static_cast<double>(area[row + t]);
+            w[row + t] = before + law.part * dw;
         }
     }
-    wanted = any != 0;
+    return any != 0;
+}
+
+/// Σ (after − before) · area over a tile, lane by lane.
+TUFT_CLONES double change_between(const float* __restrict before, const float* __restrict after,
+                                  const float* __restrict area) {
+    double sum[kRow] = {};
+    for (int row = 0; row < kN; row += kRow)
+        for (int t = 0; t < kRow; ++t)
+            sum[t] += (static_cast<double>(after[row + t]) - static_cast<double>(before[row + t])) *
+                      static_cast<double>(area[row + t]);
     double total = 0;
     for (const double s : sum) total += s;
     return total;
@@ -181,34 +189,60 @@ void film_goals(std::span<float, kN> goal, std::span<const float, kN> coverage, 
     law_goals(goal.data(), coverage.data(), params.target, deposit_law(params, 0), kN);
 }
 
-double deposit(Canvas& canvas, const CoveredTile& tile, const DepositParams& params, const DepositLaw& law,
-               std::span<const float> tone) {
-    const auto& [slot, coverage, area] = tile;
+void TileDeposit::add(std::span<const float, kN> coverage, const DepositParams& params, const DepositLaw& law) {
     // Nothing happens in rows without coverage.
     int begin = 0, end = kN;
     while (begin < end && is_bare(&coverage[begin])) begin += kRow;
     while (end > begin && is_bare(&coverage[end - kRow])) end -= kRow;
-    const int n = end - begin;
-    if (n == 0) return 0;
+    if (begin == end) return;
     static constexpr std::array<float, kN> kEven = [] {
         std::array<float, kN> even;
         even.fill(1);
         return even;
     }();
-    const float* tones = (tone.empty() ? std::span<const float>(kEven) : tone).data() + begin;
-    const auto planes = canvas.open_planes(slot);
-    if (const int only = only_pigment(params.mix);
-        only >= 0 && planes[only] != nullptr && std::count(planes.begin(), planes.end(), nullptr) == kMaxPigments - 1) {
-        if (!(params.target > 0) || !(law.rate > 0)) return 0;
-        const Alone alone{params.target,   law.hidden, law.inverse_extinction,
-                          params.capacity, law.rate,   params.mix[only]};
-        bool wanted = false;
-        const double stored =
-            deposit_alone(planes[only]->data() + begin, &coverage[begin], &area[begin], tones, alone, n, wanted);
-        if (!wanted) return 0;
-        canvas.mark_dirty(slot);
-        return stored / static_cast<double>(params.mix[only]);
+    const float* tone = (tone_.empty() ? std::span<const float>(kEven) : tone_).data() + begin;
+    const auto planes = canvas_.open_planes(slot_);
+    const int only = only_pigment(params.mix);
+    if (only >= 0 && planes[only] != nullptr && std::count(planes.begin(), planes.end(), nullptr) == kMaxPigments - 1)
+        add_alone(only, begin, end, &coverage[begin], tone, params, law);
+    else
+        add_among_others(begin, end, &coverage[begin], tone, params, law);
+}
+
+void TileDeposit::add_alone(int pigment, int begin, int end, const float* coverage, const float* tone,
+                            const DepositParams& params, const DepositLaw& law) {
+    if (!(params.target > 0) || !(law.rate > 0)) return;
+    Plane& plane = *canvas_.open_planes(slot_)[pigment];
+    if (alone_ != pigment || alone_part_ != params.mix[pigment]) {
+        sum_alone();
+        alone_ = pigment;
+        alone_part_ = params.mix[pigment];
+        before_ = plane;
     }
+    const Alone alone{params.target, law.hidden, law.inverse_extinction, params.capacity, law.rate, alone_part_};
+    if (!deposit_alone(plane.data() + begin, coverage, tone, alone, end - begin)) return;
+    changed_ = true;
+    canvas_.mark_dirty(slot_);
+}
+
+void TileDeposit::sum_alone() {
+    if (changed_)
+        given_ += change_between(before_.data(), canvas_.open_planes(slot_)[alone_]->data(), area_.data()) /
+                  static_cast<double>(alone_part_);
+    changed_ = false;
+    alone_ = -1;
+}
+
+double TileDeposit::finish() {
+    sum_alone();
+    return given_;
+}
+
+void TileDeposit::add_among_others(int begin, int end, const float* coverage, const float* tone,
+                                   const DepositParams& params, const DepositLaw& law) {
+    sum_alone();
+    const int n = end - begin;
+    const auto planes = canvas_.open_planes(slot_);
     alignas(64) float film[kN];
     alignas(64) float all[kN];
     std::fill_n(film, n, HUGE_VALF);
@@ -224,16 +258,23 @@ double deposit(Canvas& canvas, const CoveredTile& tile, const DepositParams& par
         else
             std::fill_n(film, n, 0.0f);
     }
-    if (!(strength > 0) || !(params.target > 0) || !(law.rate > 0)) return 0;
+    if (!(strength > 0) || !(params.target > 0) || !(law.rate > 0)) return;
     alignas(64) float goal[kN];
-    law_goals(goal, &coverage[begin], params.target, law, n);
-    if (!tone.empty()) scale_goals(goal, tones, n);
-    if (!increments(film, all, goal, params.capacity, law.rate, n)) return 0;
-    double given = 0;
+    law_goals(goal, coverage, params.target, law, n);
+    if (!tone_.empty()) scale_goals(goal, tone, n);
+    if (!increments(film, all, goal, params.capacity, law.rate, n)) return;
+    double stored = 0;
     for (int p = 0; p < kMaxPigments; ++p)
         if (params.mix[p] > 0)
-            given += store_change(canvas.touch(slot, p).data() + begin, film, params.mix[p], &area[begin], n);
-    return given / strength;
+            stored += store_change(canvas_.touch(slot_, p).data() + begin, film, params.mix[p], &area_[begin], n);
+    given_ += stored / strength;
+}
+
+double deposit(Canvas& canvas, const CoveredTile& tile, const DepositParams& params, const DepositLaw& law,
+               std::span<const float> tone) {
+    TileDeposit on_tile(canvas, tile.slot, tile.area, tone);
+    on_tile.add(tile.coverage, params, law);
+    return on_tile.finish();
 }
 
 }  // namespace tuft::ink

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/system/parallel.h"
+#include "ink/exchange/tile_deposit.h"
 
 namespace tuft::stroke {
 namespace {
@@ -44,19 +45,31 @@ void StampBatch::plan() {
     parallel_for(batch_.size(), 2, std::ref(plan_some));  // by reference: a loop allocates nothing
 }
 
+// The tiles of each plan are in order: they are merged.
 void StampBatch::sort_by_tile() {
     order_.clear();
-    for (std::uint32_t i = 0; i < batch_.size(); ++i) {
+    first_.clear();
+    std::array<std::uint32_t, kStamps> at{};    // of each plan's tiles, the next
+    std::array<std::uint32_t, kStamps> slot{};  // of that tile; kNone: no more
+    const auto next_slot = [&](std::size_t i) {
+        return at[i] < plans_[i].tiles.size() ? plans_[i].tiles[at[i]].slot : kNone;
+    };
+    slot.fill(kNone);
+    for (std::size_t i = 0; i < batch_.size(); ++i) {
         if (plans_[i].empty()) continue;
         piecewise_ = footprint::choose_mode(plans_[i], piecewise_, options_);
-        for (std::uint32_t k = 0; k < plans_[i].tiles.size(); ++k) order_.push_back({plans_[i].tiles[k].slot, i, k});
+        slot[i] = next_slot(i);
     }
-    std::sort(order_.begin(), order_.end(), [](const TileStamp& a, const TileStamp& b) {
-        return a.slot != b.slot ? a.slot < b.slot : a.stamp < b.stamp;
-    });
-    first_.clear();
-    for (std::size_t k = 0; k < order_.size(); ++k)
-        if (k == 0 || order_[k].slot != order_[k - 1].slot) first_.push_back(k);
+    for (;;) {
+        const std::uint32_t least = std::ranges::min(slot);
+        if (least == kNone) break;
+        first_.push_back(order_.size());
+        for (std::size_t i = 0; i < kStamps; ++i) {
+            if (slot[i] != least) continue;
+            order_.push_back({least, static_cast<std::uint32_t>(i), at[i]++});
+            slot[i] = next_slot(i);
+        }
+    }
     first_.push_back(order_.size());
 }
 
@@ -71,33 +84,36 @@ bool StampBatch::find_tone(std::uint32_t slot, const Stamp& stamp, std::span<flo
 }
 
 // All stamps of one tile, by one thread. `erased`: one for each stamp, or none.
-void StampBatch::write_tile(std::span<const TileStamp> stamps, std::span<const ink::DepositLaw> laws,
-                            std::span<ink::Amounts> erased, std::span<double> given, footprint::Unpacked& unpacked) {
+double StampBatch::write_tile(std::span<const TileStamp> stamps, std::span<const ink::DepositLaw> laws,
+                              std::span<ink::Amounts> erased, footprint::Unpacked& unpacked) {
     alignas(64) std::array<float, atlas::kTileTexels> exposure;
     const std::uint32_t slot = stamps.front().slot;
     const atlas::TexelTile& tile = target_.texels().tiles[slot];
     const MaskTexels* mask = target_.mask();
-    if (mask && mask->none(slot)) return;
+    if (mask && mask->none(slot)) return 0;
     alignas(64) std::array<float, atlas::kTileTexels> tone;
-    std::optional<bool> toned;
+    std::optional<ink::TileDeposit> deposit;
     for (std::size_t k = 0; k < stamps.size(); ++k) {
         const footprint::StampJobs& plan = plans_[stamps[k].stamp];
         if (!footprint::evaluate_tile(target_.texels(), plan, plan.tiles[stamps[k].tile], unpacked, exposure)) continue;
         const Stamp& stamp = batch_[stamps[k].stamp];
         if (mask) mask->apply(slot, exposure);
-        const ink::CoveredTile covered{slot, exposure, tile.area};
         if (!erased.empty()) {
-            erased[k] =
-                ink::erase(target_.canvas(), {covered, stamp.ds}, erase_starts_.at(slot), {.strength = stamp.erases});
+            erased[k] = ink::erase(target_.canvas(), {{slot, exposure, tile.area}, stamp.ds}, erase_starts_.at(slot),
+                                   {.strength = stamp.erases});
             continue;
         }
-        if (!toned) toned = find_tone(slot, batch_[stamps[stamps.size() / 2].stamp], tone);
+        if (!deposit) {
+            const bool toned = find_tone(slot, batch_[stamps[stamps.size() / 2].stamp], tone);
+            deposit.emplace(target_.canvas(), slot, tile.area,
+                            toned ? std::span<const float>(tone) : std::span<const float>());
+        }
         if (stamp.by_hair) target_.expose_grain(slot, exposure, stamp.grain_film);
         ink::DepositParams ink = stamp.ink;
         ink.capacity = target_.capacity(slot, ink.capacity);
-        given[k] = ink::deposit(target_.canvas(), covered, ink, laws[stamps[k].stamp],
-                                *toned ? std::span<const float>(tone) : std::span<const float>());
+        deposit->add(exposure, ink, laws[stamps[k].stamp]);
     }
+    return deposit ? deposit->finish() : 0;
 }
 
 double StampBatch::flush(const ProgressFn& going_on) {
@@ -117,7 +133,7 @@ double StampBatch::flush(const ProgressFn& going_on) {
     std::array<ink::DepositLaw, kStamps> laws;
     for (std::size_t i = 0; i < batch_.size(); ++i) laws[i] = ink::deposit_law(batch_[i].ink, batch_[i].ds);
 
-    given_.assign(order_.size(), 0.0);
+    given_.assign(n_tiles, 0.0);
     erased_of_.assign(erases ? order_.size() : 0, {});
     for (std::size_t from = 0; from < n_tiles; from += kTilesPerReport) {
         report(going_on, "painting", 0);
@@ -126,9 +142,9 @@ double StampBatch::flush(const ProgressFn& going_on) {
             footprint::Unpacked unpacked;
             for (std::size_t t = from + begin; t < from + end; ++t) {
                 const std::size_t at = first_[t], n_stamps = first_[t + 1] - at;
-                write_tile(std::span(order_).subspan(at, n_stamps), laws,
-                           erases ? std::span(erased_of_).subspan(at, n_stamps) : std::span<ink::Amounts>(),
-                           std::span(given_).subspan(at, n_stamps), unpacked);
+                given_[t] = write_tile(std::span(order_).subspan(at, n_stamps), laws,
+                                       erases ? std::span(erased_of_).subspan(at, n_stamps) : std::span<ink::Amounts>(),
+                                       unpacked);
             }
         };
         parallel_for(n, 4, std::ref(write_some));

@@ -42,8 +42,9 @@ class StampBatch {
     void sort_by_tile();
     /// Computes the factor on the film of each texel of a tile. Returns false where it is 1.
     bool find_tone(std::uint32_t slot, const Stamp& stamp, std::span<float, atlas::kTileTexels> tone);
-    void write_tile(std::span<const TileStamp> stamps, std::span<const ink::DepositLaw> laws,
-                    std::span<ink::Amounts> erased, std::span<double> given, footprint::Unpacked& unpacked);
+    /// Returns the ink given to a tile, film·m².
+    double write_tile(std::span<const TileStamp> stamps, std::span<const ink::DepositLaw> laws,
+                      std::span<ink::Amounts> erased, footprint::Unpacked& unpacked);
 
     StampTarget& target_;
     footprint::StampOptions options_;
@@ -55,8 +56,8 @@ class StampBatch {
     // Of the present batch; their memory is reused.
     std::vector<TileStamp> order_;         ///< by tile, then by stamp
     std::vector<std::size_t> first_;       ///< of each tile in `order_`, and its end
-    std::vector<double> given_;            ///< film·m², by `order_`
-    std::vector<ink::Amounts> erased_of_;  ///< likewise; empty where nothing is erased
+    std::vector<double> given_;            ///< film·m², by tile
+    std::vector<ink::Amounts> erased_of_;  ///< likewise, by `order_`; empty where nothing is erased
     ink::EraseStarts erase_starts_;
     ink::Amounts erased_;
 };
