@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
 #include <tuple>
+#include <utility>
 
 #include "grids.h"
 #include "mesh/read/polygon_soup.h"
@@ -31,6 +36,16 @@ TriangleMesh walls(const std::vector<std::array<double, 5>>& all) {
     }
     m.neighbours.assign(3 * m.triangles.size(), kNone);
     return m;
+}
+
+/// A normal deviate of the counter k (Box and Muller, of a multiplicative hash).
+double normal(std::uint64_t k) {
+    const auto uniform = [](std::uint64_t n) {
+        n = (n + 1) * 0x9e3779b97f4a7c15ULL;
+        n = (n ^ (n >> 31)) * 0xbf58476d1ce4e5b9ULL;
+        return (static_cast<double>((n ^ (n >> 29)) >> 11) + 0.5) / 9007199254740992.0;
+    };
+    return std::sqrt(-2 * std::log(uniform(2 * k))) * std::cos(2 * std::numbers::pi * uniform(2 * k + 1));
 }
 
 TEST(FreeArea, OnASphereItIsInTheMiddle) {
@@ -172,6 +187,30 @@ TEST(FreeArea, ACalmAreaIsPreferredToALargerRoughOne) {
     const auto free = find_free_area(query, Side::front, 1);
     ASSERT_TRUE(free);
     EXPECT_NEAR(free->at.position.x, -0.05, 0.012) << "within the flat wall";
+}
+
+// Noise across the surface of a scan. Its triangles lean by 20 to 60 degrees; at the scale of a drawing the surface is
+// as calm as before.
+TEST(FreeArea, NoiseOfAScanLeavesItsSize) {
+    TriangleMesh model = mesh::build_surface(mesh::read_polygon_file(source_folder() + "/models/bowl.ply")).mesh;
+    const std::vector<Vec3f> clean = model.positions;
+    std::vector<Vec3f> across(clean.size(), Vec3f(0));
+    for (const auto& t : model.triangles)
+        for (const std::uint32_t v : t) across[v] += glm::cross(clean[t[1]] - clean[t[0]], clean[t[2]] - clean[t[0]]);
+    for (const auto& [side, aspect] : {std::pair{Side::front, 1.0}, {Side::inside, 1.0}}) {
+        std::optional<FreeArea> smooth;
+        for (const float noise : {0.0F, 0.3e-3F}) {
+            for (std::size_t v = 0; v < clean.size(); ++v)
+                model.positions[v] = clean[v] + noise * static_cast<float>(normal(v)) * glm::normalize(across[v]);
+            const SurfaceQuery query(model);
+            const auto free = find_free_area(query, side, aspect);
+            ASSERT_TRUE(free) << noise;
+            if (noise == 0) smooth = free;
+            EXPECT_LT(std::abs(std::log(free->size.x / smooth->size.x)), std::log(1.3))
+                << side_name(side) << ", " << aspect << ", " << noise << ": a person sees the same wall";
+            EXPECT_LT(glm::distance(free->at.position, smooth->at.position), 0.1 * smooth->size.x) << noise;
+        }
+    }
 }
 
 }  // namespace

@@ -36,14 +36,22 @@ struct FreeArea {
 
 /// Finds the largest calm rectangle of a side.
 ///
-/// Casts 129² parallel rays over the model's box. A ray is free where it hits the surface at less than 70° to its
-/// normal without a step to its neighbours; at the inside also with walls around it in six of eight directions. Gaps of
-/// one or two rays, such as shut lines, are ignored. A rectangle has the given `aspect` (width over height, clamped to
-/// 1/32–32), free rays only, and |mean of its normals| ≥ 0.85: no more bent than a wide arc of a cylinder. Its area
-/// counts less, by up to two thirds, where normals vary within five rays. Of equal rectangles, the middle one of the
-/// largest group is taken. In a view whose halves mirror each other (97 % of its rays), the largest rectangle on the
-/// middle line is taken where it is at least a third as wide as that. Returns nothing where less than 1/32 of the view
-/// is free. Cost: about 0.1 s.
+/// Casts 129² parallel rays over the model's box. Gaps of one or two rays, such as shut lines, are ignored. Through the
+/// depths within two rays (of the longer side of a cell) of each ray a plane is laid by least squares, twice: it gives
+/// the smoothed depth, then the normal. So noise of a scan counts by its mean over some 25 rays, not by triangles. A
+/// ray is free where the surface lies at less than 70° to it without a step to its neighbours; at the inside also with
+/// walls around it in six of eight directions. Roughness of a ray is
+///
+///     1 − |mean of the normals around| + max(0, r − 2 q)
+///
+/// with the mean square distance r of the depths from the plane, gaps taken half a cell deep, in squares of a cell, and
+/// the lower quartile q of r over the view, which is the noise; where it exceeds 0.1, such as at a handle, 2 are added.
+///
+/// A rectangle has the given `aspect` (width over height, clamped to 1/32–32), free rays only, and |mean of its
+/// normals| ≥ 0.85: no more bent than a wide arc of a cylinder. It is worth its scale / (1 + mean roughness / 0.08). Of
+/// rectangles that are worth as much within 3 %, the middle one of the largest group is taken. In a view whose halves
+/// mirror each other (93 % of its rays), the best rectangle on the middle line is taken where it is worth at least a
+/// third of the best of all. Returns nothing where less than 1/32 of the view is free. Cost: about 0.1 s.
 std::optional<FreeArea> find_free_area(const mesh::SurfaceQuery& query, Side side, double aspect);
 
 }  // namespace tuft::stroke
