@@ -3,12 +3,44 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <chrono>
 #include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
+#include "app/document/pictures/state_folder.h"
 #include "models.h"
 
 namespace tuft::app {
 namespace {
+
+TEST(LostWork, TheLatestIsOfferedFirst) {
+    namespace fs = std::filesystem;
+    const fs::path state = fs::path(testing::TempDir()) / ("tuft_lost_" + std::to_string(getpid()));
+    const char* before = std::getenv("XDG_STATE_HOME");
+    const std::string kept = before ? before : "";
+    setenv("XDG_STATE_HOME", state.c_str(), 1);
+    const fs::path sessions = state_folder() / "sessions";
+    fs::create_directories(sessions);
+    const auto now = fs::file_time_type::clock::now();
+    const std::vector<int> hours_ago{3, 0, 5, 1, 4, 2};  // 720 orders: that of the folder is another one
+    for (const int hours : hours_ago) {
+        const fs::path project = sessions / (std::to_string(hours) + ".tuft");
+        std::ofstream(project) << "x";
+        fs::last_write_time(project, now - std::chrono::hours(hours));
+        std::ofstream(sessions / (std::to_string(9 - hours) + ".note")) << project.string() << "\nbowl.ply\n";
+    }
+    const std::vector<LostWork> lost = find_lost_work();
+    ASSERT_EQ(lost.size(), hours_ago.size());
+    for (std::size_t i = 0; i < lost.size(); ++i) EXPECT_EQ(lost[i].project.stem(), std::to_string(i));
+    EXPECT_EQ(lost[0].changed - lost[2].changed, 2 * 3600);
+    fs::remove_all(state);
+    if (before)
+        setenv("XDG_STATE_HOME", kept.c_str(), 1);
+    else
+        unsetenv("XDG_STATE_HOME");
+}
 
 /// No file may grow beyond `bytes` while it lives, as on a full disk.
 class FullDisk {

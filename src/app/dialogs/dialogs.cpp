@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "app/widgets/file_list.h"
 #include "core/text/units.h"
 #include "io/model/read_model.h"
 
@@ -225,6 +226,7 @@ void recovery_dialog(Session& s) {
     }
     fact(ui, "Model", fs::path(work.source).filename().string());
     fact(ui, "Project", is_unnamed(work.project) ? ui.tr("not saved under a name yet") : work.project.string());
+    fact(ui, "Changed", date_text(work.changed));
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     bool go_on = false, later = false, drop = false;
     if (s.project.recovery.confirm_delete) {
@@ -277,7 +279,7 @@ void settings_dialog(Session& s) {
     ImGui::SameLine();
     if (ui.choice("Light", w.theme == Theme::light, nullptr, 120)) w.theme = Theme::light, changed = true;
     ui.heading("Size of text and buttons");
-    if (ui.choice("Automatic", !w.own_scale, "As the display asks for it", 100)) w.own_scale = false, changed = true;
+    if (ui.choice("Automatic", !w.own_scale, "As the display asks for it", 96)) w.own_scale = false, changed = true;
     for (const float scale : {1.0f, 1.25f, 1.5f, 2.0f, 2.5f, 3.0f}) {
         char label[16];
         std::snprintf(label, sizeof label, "%.0f %%", 100.0 * static_cast<double>(scale));

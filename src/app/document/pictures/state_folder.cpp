@@ -2,11 +2,13 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <tuple>
 
 #include "core/error.h"
 #include "core/files/files.h"
@@ -36,6 +38,12 @@ std::vector<std::string> read_lines(const fs::path& path) {
     std::ifstream in(path);
     for (std::string line; lines.size() < 100 && std::getline(in, line);) lines.push_back(line);
     return lines;
+}
+
+// Seconds since 1970; 0 where the file does not say it.
+std::int64_t changed_at(const fs::path& file) {
+    struct stat status {};
+    return ::stat(file.c_str(), &status) == 0 ? static_cast<std::int64_t>(status.st_mtime) : 0;
 }
 
 // True when no living program holds the note's lock.
@@ -103,10 +111,13 @@ std::vector<LostWork> find_lost_work() {
         if (entry.path().extension() != ".note" || !abandoned(entry.path())) continue;
         const std::vector<std::string> lines = read_lines(entry.path());
         if (lines.size() >= 2 && fs::exists(lines[0]))
-            found.push_back({entry.path(), lines[0], lines[1]});
+            found.push_back({entry.path(), lines[0], lines[1], changed_at(lines[0])});
         else
             fs::remove(entry.path(), ec);
     }
+    std::sort(found.begin(), found.end(), [](const LostWork& a, const LostWork& b) {
+        return std::tie(b.changed, a.project) < std::tie(a.changed, b.project);
+    });
     return found;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -38,7 +39,9 @@ class SessionNote {
 struct LostWork {
     std::filesystem::path note, project;
     std::string source;
+    std::int64_t changed = 0;  ///< when the project was last written, seconds since 1970
 };
+/// Returns what killed programs left, the latest first.
 std::vector<LostWork> find_lost_work();
 /// Removes the note; with `remove_project` also the project, when it is in the state folder.
 void forget_lost_work(const LostWork& work, bool remove_project);
