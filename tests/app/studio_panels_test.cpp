@@ -1,6 +1,9 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
 
+#include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <map>
 #include <set>
@@ -242,6 +245,29 @@ TEST_F(Panels, TheFileDialogMakesFoldersFiltersSortsAndRemembersWhereOneWas) {
     EXPECT_FALSE(filtered.contains("vase.svg"));
     EXPECT_LT(first["bowl-one.svg"].second, first["bowl-two.svg"].second);
     EXPECT_GT(filtered["bowl-one.svg"].second, filtered["bowl-two.svg"].second) << "sorted the other way round";
+}
+
+// A lease (fcntl) makes who opens the file wait, as a disk does that is gone: up to 45 s, or until it is given back.
+TEST_F(Panels, QuittingDoesNotWaitForAPreviewThatADiskNeverGives) {
+    std::ofstream(path("slow.svg")) << "<svg viewBox='0 0 9 9'><path d='M1 1 l7 7' stroke='black'/></svg>";
+    const auto before = signal(SIGIO, SIG_IGN);  // by which the system informs the holder of it
+    const int file = ::open(path("slow.svg").c_str(), O_RDWR);
+    ASSERT_GE(file, 0);
+    if (::fcntl(file, F_SETLEASE, F_WRLCK) != 0) {
+        ::close(file);
+        signal(SIGIO, before);
+        GTEST_SKIP() << "no leases on this file system";
+    }
+    const Ran ran = studio(kBowl + "set tool writing\nwait 0.1\nclick \"Writing or drawing...\"\nwait 0.2\nclick " +
+                           "\"file name\"\nkey ctrl+a\ntype " + folder_.string() +
+                           "\nkey enter\nwait 0.2\nclick slow.svg\nwait 0.3\nexpect label Preview\n");
+    // Would wait still: the lease is neither given back nor has its time run out.
+    EXPECT_EQ(::open(path("slow.svg").c_str(), O_RDONLY | O_NONBLOCK), -1);
+    EXPECT_EQ(errno, EWOULDBLOCK);
+    ::fcntl(file, F_SETLEASE, F_UNLCK);
+    ::close(file);
+    signal(SIGIO, before);
+    EXPECT_EQ(ran.status, 0) << ran.err;
 }
 
 TEST_F(Panels, TheLanguageIsChangedInTheMenuBarAndAMissingFontIsNamedWithItsPackage) {

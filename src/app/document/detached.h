@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <future>
 #include <thread>
 #include <type_traits>
@@ -17,6 +18,13 @@ std::future<std::invoke_result_t<Work>> run_detached(Work work) {
     std::future<std::invoke_result_t<Work>> result = task.get_future();
     std::thread(std::move(task)).detach();
     return result;
+}
+
+/// Called before the result is dropped: work that is nearly done ends first, so that none runs when the program ends;
+/// work that never answers is left alone after 0.2 s.
+template <typename Result>
+void leave(const std::future<Result>& work) {
+    if (work.valid()) work.wait_for(std::chrono::milliseconds(200));
 }
 
 }  // namespace tuft::app

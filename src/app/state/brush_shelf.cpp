@@ -89,10 +89,8 @@ void BrushShelf::look() {
     });
 }
 
-// A look that is nearly done ends before the program does; one at a disk that is gone is left alone.
 BrushShelf::~BrushShelf() {
-    constexpr std::chrono::milliseconds kPatience{200};
-    if (busy()) looking_.wait_for(kPatience);
+    leave(looking_);
 }
 
 void BrushShelf::wait() const {

@@ -14,6 +14,7 @@
 #include <tuple>
 #include <utility>
 
+#include "app/document/detached.h"
 #include "app/document/pictures/state_folder.h"
 #include "app/document/writing.h"
 #include "core/error.h"
@@ -286,6 +287,10 @@ bool FileDialog::draw_list(Ui& ui, float width) {
     return twice;
 }
 
+FileDialog::~FileDialog() {
+    leave(sketch_.reading);
+}
+
 bool FileDialog::busy() const {
     return shown_ && sketch_.reading.valid() &&
            sketch_.reading.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
@@ -300,9 +305,9 @@ void FileDialog::load_sketch() {
     if (sketch_.file == file.string()) return;
     sketch_.file = file.string();
     sketch_.lines.clear();
-    std::error_code ec;
-    if (!fs::is_regular_file(file, ec) || fs::file_size(file, ec) > kMostSketched) return;
-    sketch_.reading = std::async(std::launch::async, [file]() -> std::vector<std::vector<Vec2>> {
+    sketch_.reading = run_detached([file]() -> std::vector<std::vector<Vec2>> {
+        std::error_code ec;
+        if (!fs::is_regular_file(file, ec) || fs::file_size(file, ec) > kMostSketched) return {};
         try {
             return read_sketch(file);
         } catch (const std::exception&) {

@@ -36,6 +36,11 @@ class FileDialog {
         save_copy
     };
 
+    FileDialog() = default;
+    ~FileDialog();  ///< does not wait for a preview that a disk never gives
+    FileDialog(const FileDialog&) = delete;
+    FileDialog& operator=(const FileDialog&) = delete;
+
     void show(Purpose purpose, const std::filesystem::path& start);
     bool shown() const { return shown_; }
     void close() { shown_ = false; }
