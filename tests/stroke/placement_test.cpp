@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "grids.h"
+#include "stroke/placement/holder.h"
 #include "stroke/placement/snap.h"
 #include "stroke/placement/tip_lag.h"
 
@@ -195,6 +196,18 @@ TEST(Placement, HeldTuftReachesThePressedDepth) {
         EXPECT_NEAR(glm::dot(up, s.right) / glm::dot(up, s.normal), std::tan(s.tilt.x), 1e-12);
         EXPECT_NEAR(glm::dot(up, s.down) / glm::dot(up, s.normal), std::tan(s.tilt.y), 1e-12);
         EXPECT_EQ(pose.time, s.time);
+    }
+}
+
+/// Of a holder that leans along its broad side: however both are turned on the surface.
+TEST(Placement, ABroadSideThatTheHolderLeansAlongStaysInItsPlane) {
+    const HolderOptions options{.tuft_length = 0.03, .steady = 0, .tip_lag = {}};
+    for (const double turn : {0.3, 0.8, 2.0, -1.2}) {
+        const Vec2 along = std::tan(0.4) * Vec2(std::cos(turn), -std::sin(turn));  // y of a trace is down
+        const brush::Pose pose = pose_holder(Vec3(0), 0, {.tilt = glm::atan(along), .roll = turn}, options);
+        const Vec3 x = pose.rotation * Vec3(1, 0, 0), across(-std::sin(turn), std::cos(turn), 0);
+        EXPECT_NEAR(glm::dot(-pose.axis(), across), 0, 1e-12) << turn;
+        EXPECT_NEAR(glm::dot(x, across), 0, 1e-12) << turn;
     }
 }
 

@@ -314,6 +314,12 @@ TEST(TipLag, AMakeLeansAcrossItsBroadSideUnlessAPenTiltsIt) {
     EXPECT_EQ(tilts(quarter, {0, 0.01}), Vec2(0, 0.01));
     options.across = false;
     expect_near(tilts(0), {0.4, 0});
+    options.blade_landing = 0.02;  // along its broad side, whichever end of it leads
+    expect_near(tilts(0), {0.4, 0});
+    expect_near(tilts(2 * quarter), {0.4, 0});
+    expect_near(tilts(quarter), {0, 0});
+    expect_near(tilts(0.5 * quarter), {both, -both});
+    options.blade_landing = 0;
     // Where the path turns back the lean comes round, and passes through upright.
     StrokeSamples back = rolled_line(0.02, 0.4, quarter);
     for (std::size_t i = 0; i < back.samples.size(); ++i)

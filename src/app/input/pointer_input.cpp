@@ -215,7 +215,7 @@ brush::Pose PointerInput::pose_at(const Aim& aim, const Vec3& point, const Vec3&
                                    std::tan(tilt.y) * along(aim.view_up) + tipped * dragged_.string);
     const double height = holder_.tuft_length + (pressure > 0 ? -pressure * holder_.working_depth : holder_.hover);
     return {.position = point + ahead_of(aim, normal, pressure) + height * up,
-            .rotation = rotation_at(aim, up),
+            .rotation = rotation_at(aim, normal, up),
             .time = time};
 }
 
@@ -240,7 +240,7 @@ double PointerInput::roll_at(const Aim& aim) const {
 }
 
 // A wide ferrule has its broad side across the view; a round one lies as it may.
-Quat PointerInput::rotation_at(const Aim& aim, const Vec3& up) const {
+Quat PointerInput::rotation_at(const Aim& aim, const Vec3& normal, const Vec3& up) const {
     const auto turned = [](const Quat& q, double roll) {
         return roll == 0 ? q : glm::normalize(q * glm::angleAxis(roll, Vec3(0, 0, 1)));
     };
@@ -248,7 +248,7 @@ Quat PointerInput::rotation_at(const Aim& aim, const Vec3& up) const {
         const Frame f = make_frame(Vec3(0), up);
         return turned(glm::normalize(glm::quat_cast(Mat3(f.t, f.b, f.n))), -aim.turn);
     }
-    const Vec3 x = stroke::axes_across(up, aim.view_right, -aim.view_up).right;
+    const Vec3 x = parallel_transport(stroke::axes_across(normal, aim.view_right, -aim.view_up).right, normal, up);
     return turned(glm::normalize(glm::quat_cast(Mat3(x, glm::cross(up, x), up))), roll_at(aim));
 }
 

@@ -128,7 +128,7 @@ class PointerInput {
     Vec3 levelled_normal(const Aim& aim, const mesh::SurfacePoint& hit) const;
     bool is_clean(const Aim& aim) const { return settings_.clean_ends && aim.pressure < 0; }
     brush::Pose pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure, double time) const;
-    Quat rotation_at(const Aim& aim, const Vec3& up) const;
+    Quat rotation_at(const Aim& aim, const Vec3& normal, const Vec3& up) const;
     double roll_at(const Aim& aim) const;
     Vec3 across(const Aim& aim) const;
     Vec2 lean_of_make(const Aim& aim, const Vec3& normal) const;

@@ -35,7 +35,7 @@ double working_depth(const brush::Preset& preset) {
 }
 
 bool bends_across(const brush::Preset& preset) {
-    return brush::has_broad_side(preset) && preset.lean > 0;
+    return brush::has_broad_side(preset) && preset.lean > 0 && preset.slant == 0;
 }
 
 bool lags_by_turn(const brush::Preset& preset) {
@@ -66,7 +66,10 @@ brush::Pose pose_holder(const Vec3& place, double height, const HolderPose& held
     const double lean = std::min(glm::length(held.tilt), options.max_tilt);
     const Vec2 tilt = lean > 0 ? held.tilt * (lean / glm::length(held.tilt)) : Vec2{0};
     const Vec3 up = glm::normalize(held.normal + std::tan(tilt.x) * held.right + std::tan(tilt.y) * held.down);
-    const Vec3 level = into_plane(held.right, up);
+    // The shortest rotation: one that keeps x level turns it out of the lean, by a degree and more, which is twice the
+    // line of a blade.
+    const Vec3 level = lean > 0 ? parallel_transport(into_plane(held.right, held.normal), held.normal, up)
+                                : into_plane(held.right, up);
     const Vec3 x = held.roll == 0 ? level : std::cos(held.roll) * level + std::sin(held.roll) * glm::cross(up, level);
     brush::Pose pose;
     pose.position = place + (height - held.depth) * held.normal + options.tuft_length * up;

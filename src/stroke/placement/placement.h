@@ -105,7 +105,8 @@ struct HolderOptions {
 double working_depth(const brush::Preset& preset);
 
 /// Whether hair of this brush bends across the broad side only, whichever way the path goes: of a wide ferrule whose
-/// make leans, such as a fan. Along its broad side a fan's hair has no steady place.
+/// make leans, such as a fan, but for a blade, which leans along its broad side. Along that a fan's hair has no steady
+/// place.
 bool bends_across(const brush::Preset& preset);
 
 /// Whether the tip lag of this brush differs by how its broad side lies to the path: of a wide ferrule that does not
@@ -121,7 +122,7 @@ HolderOptions holder_options(const brush::Preset& preset, const mesh::TriangleMe
 ///
 /// The broad side of the ferrule is turned about that axis by the roll,
 ///
-///     x = cos(roll) r + sin(roll) (up × r),    r: unit, the direction of `right` orthogonal to up.
+///     x = cos(roll) r + sin(roll) (up × r),    r: `right`, turned as the normal is by the smallest rotation to up.
 ///
 /// The unbent tip lies `tip_depths` below the sample and leads it by the tip lag in the tangent plane. Normal and
 /// height are levelled (`level_surface` over `steady` of path): the holder follows ridges and valleys and passes over

@@ -211,7 +211,9 @@ double lean_string(const HolderOptions& options) {
 Vec2 lean_of_make(const HolderOptions& options, double roll, const Vec2& ahead) {
     const double taut = glm::length(ahead);
     if (!(taut > 1e-9)) return Vec2{0};
-    return glm::atan(std::tan(taut * options.lean) / taut * bent_along(options, roll, ahead));
+    const Vec2 broad{std::cos(roll), -std::sin(roll)};
+    const Vec2 to = options.blade_landing > 0 ? glm::dot(ahead, broad) * broad : bent_along(options, roll, ahead);
+    return glm::atan(std::tan(taut * options.lean) / taut * to);
 }
 
 namespace {
@@ -316,6 +318,24 @@ double angle_of(const Vec2& ahead) {
     return std::atan2(-ahead.y, ahead.x);
 }
 
+// A blade lies along the hair that it drags: it turns as late as the string does, else it sweeps its line wider in one
+// bend than in the other. Lag e of the roll r over the path s, exact for rolls that are linear between samples:
+// de/ds = dr/ds - e / string. A turn in place is not late.
+void turn_with_string(std::span<StrokeSample> samples, double string) {
+    constexpr double kMostLate = 0.2;  // radians
+    double late = 0, hand = samples.front().roll;
+    for (std::size_t i = 1; i < samples.size(); ++i) {
+        const double gone = glm::distance(samples[i].position, samples[i - 1].position);
+        const double turned = std::remainder(samples[i].roll - hand, 2 * std::numbers::pi);
+        hand = samples[i].roll;
+        if (gone > 0) {
+            const double steady = std::clamp(turned / gone * string, -kMostLate, kMostLate);
+            late = steady + (late - steady) * std::exp(-gone / string);
+        }
+        samples[i].roll -= late;
+    }
+}
+
 /// Direction in which a hand sets out; where its trace does not leave the first place, hair that bends across its broad
 /// side is set down towards the side that the holder leans to, or y.
 Vec2 sets_out(std::span<const StrokeSample> samples, const HolderOptions& options) {
@@ -353,6 +373,7 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     // slide on ahead of the hand and fall to its side.
     const bool leans = options.lean > kLean && glm::dot(trace.samples.front().tilt, ahead) > kLean;
     if ((pressed || options.blade_landing > 0) && ahead != Vec2(0) && !leans) lean_ahead(trace, options, ahead);
+    if (options.blade_landing > 0) turn_with_string(trace.samples, options.tip_lag_turn);
     Vec2 dragged = first - options.tip_lag_turn * ahead, before = first;
     FollowedTurn turn(options.tuft_length, trace.samples.front().roll - angle_of(ahead));
     for (StrokeSample& s : trace.samples) {
