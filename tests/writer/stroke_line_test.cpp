@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/files/files.h"
 #include "writer/gesture/side_table.h"
 
 namespace tuft::writer {
@@ -111,6 +112,29 @@ TEST(Sides, OfARoundStrokeAreHalfAsWideUpwards) {
     EXPECT_NEAR(half_at(0.5 * std::numbers::pi), 24,
                 1.1);  // down at the left; knots are 0.6 rad apart: 6 (1 − cos 0.6)
     EXPECT_NEAR(half_at(1.5 * std::numbers::pi), 12, 1.1);  // up at the right
+}
+
+// 豎彎鉤 as a typeface's centre line has it: down, round, along, and up at the root of the hook, where it turns by less
+// than a corner. All of it is one segment, which turns by more than a round stroke does. The nine 豎彎鉤 of
+// held_out.txt that are one segment are 80 to 110 units wide at the root of the hook; a round stroke is at most 48 wide
+// anywhere.
+TEST(SideTable, AHanHookIsAsWideAsHooksAreWhereItsCornerIsSoft) {
+    std::vector<Vec2> hook{{400, 700}, {400, 300}};
+    for (int i = 1; i <= 10; ++i)
+        hook.push_back(Vec2(550, 300) + 150.0 * Vec2(-std::cos(i * 0.157), -std::sin(i * 0.157)));
+    for (const Vec2& p : {Vec2(740, 150), Vec2(790, 168), Vec2(820, 200), Vec2(826, 330)}) hook.push_back(p);
+    const SideTable table = SideTable::load(data_folder() / "models" / "writer" / "sides.txt");
+    const StrokeLine line = make_stroke_line(hook);
+    ASSERT_EQ(line.segments.size(), 1u);
+    ASSERT_TRUE(is_round(line));
+    const auto width_at_root = [&](char32_t code) {
+        const Glyph glyph{.code = code, .strokes = {{.median = {{250, 600}, {800, 660}}}, {.median = hook}}};
+        const StrokeSides sides = table.predict(line, glyph, 1);
+        return *std::max_element(sides.left[0].begin() + 8, sides.left[0].begin() + 14) +
+               *std::max_element(sides.right[0].begin() + 8, sides.right[0].begin() + 14);
+    };
+    EXPECT_GT(width_at_root(U'七'), 80);
+    EXPECT_LE(width_at_root(U'も'), 48);
 }
 
 TEST(Clearances, OfADiscAreTheDistanceToItsEdge) {

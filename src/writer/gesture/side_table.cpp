@@ -168,7 +168,7 @@ SideTable SideTable::parse(std::string_view text, const std::string& source) {
 }
 
 StrokeSides SideTable::predict(const StrokeLine& line, const Glyph& glyph, std::size_t stroke) const {
-    if (is_round(line)) return round_sides(line);
+    if (!is_han(glyph.code) && is_round(line)) return round_sides(line);
     const std::size_t n = line.segments.size();
     const std::vector<double> features = stroke_features(line, glyph, stroke);
     StrokeSides sides;

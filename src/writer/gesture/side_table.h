@@ -35,9 +35,10 @@ class SideTable {
     static SideTable load(const std::filesystem::path& path);
     static SideTable parse(std::string_view text, const std::string& source);
 
-    /// Returns the predicted sides of a stroke, units, at least 1; fans at least 0. Of a round one `round_sides`.
-    /// Where the line is of a pen (`Glyph::of_pen`), a side is at most 5/4 of the stroke's median one and 8 units:
-    /// those at corners and hooks, along the bisector of a typeface's line, would become balls.
+    /// Returns the predicted sides of a stroke, units, at least 1; fans at least 0. `round_sides` of a
+    /// round one, but in Han characters. Where the line is of a pen (`Glyph::of_pen`), a side is at most 5/4 of the
+    /// stroke's median one and 8 units: those at corners and hooks, along the bisector of a typeface's line, would
+    /// become balls.
     StrokeSides predict(const StrokeLine& line, const Glyph& glyph, std::size_t stroke) const;
     bool has(const std::string& stroke_class) const { return models_.contains(stroke_class); }
 
@@ -57,8 +58,8 @@ class SideTable {
 
 inline constexpr double kRoundTurn = 2.4;  ///< radians
 
-/// Returns whether a segment of a line turns by more than `kRoundTurn` on its way, as strokes of kana do and none of
-/// regular script.
+/// Returns whether a segment of a line turns by more than `kRoundTurn` on its way, as strokes of kana do. In regular
+/// script hooks do (己) where their corner is too blunt to end a segment.
 bool is_round(const StrokeLine& line);
 
 /// Returns the sides of a round stroke, to which no table applies: half as wide upwards (y of the direction 1) as

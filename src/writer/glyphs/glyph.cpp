@@ -1,6 +1,8 @@
 #include "writer/glyphs/glyph.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/error.h"
 
@@ -9,6 +11,12 @@ namespace tuft::writer {
 Vec2 leaned(const Vec2& p, const Glyph& glyph, double slant) {
     const double lean = std::tan(slant);
     return glyph.sideways ? Vec2(p.x, p.y - lean * p.x) : Vec2(p.x + lean * p.y, p.y);
+}
+
+bool is_han(char32_t code) {
+    static constexpr char32_t kRanges[][2] = {{0x2E80, 0x2FDF}, {0x3400, 0x9FFF}, {0xF900, 0xFAFF}, {0x20000, 0x3FFFF}};
+    return std::any_of(std::begin(kRanges), std::end(kRanges),
+                       [code](const char32_t(&range)[2]) { return code >= range[0] && code <= range[1]; });
 }
 
 std::u32string characters_of(std::string_view text) {

@@ -58,6 +58,9 @@ Vec2 leaned(const Vec2& p, const Glyph& glyph, double slant);
 std::u32string characters_of(std::string_view text);
 inline constexpr std::size_t kMostCharacters = 10'000;
 
+/// Returns whether a character is of the script Han [UAX24], but for U+3007 〇, which is a circle.
+bool is_han(char32_t code);
+
 /// Throws `Error` with `source` where a glyph has numbers that are not finite or beyond ±`kFarthestUnit`, a centre line
 /// of fewer than two points, or more than `kMostStrokes` strokes or `kMostPoints` points.
 void check_glyph(const Glyph& glyph, const std::string& source);

@@ -38,10 +38,9 @@ bool is_without_form(char32_t c) {
 }
 
 /// Han characters and kana, without punctuation.
-bool is_han(char32_t c) {
-    static constexpr CodeRange kRanges[] = {{0x2E80, 0x2FDF}, {0x3005, 0x3007}, {0x3041, 0x3096},  {0x30A1, 0x30FA},
-                                            {0x3400, 0x9FFF}, {0xF900, 0xFAFF}, {0x20000, 0x3FFFF}};
-    return is_in(kRanges, c);
+bool is_han_or_kana(char32_t c) {
+    static constexpr CodeRange kRanges[] = {{0x3005, 0x3007}, {0x3041, 0x3096}, {0x30A1, 0x30FA}};
+    return is_han(c) || is_in(kRanges, c);
 }
 
 /// Letters of Latin, Greek and Cyrillic, and digits.
@@ -193,7 +192,8 @@ Glyph in_column(Glyph glyph) {
 void space_scripts(std::vector<Glyph>& line) {
     for (std::size_t i = 0; i + 1 < line.size(); ++i) {
         const char32_t a = line[i].code, b = line[i + 1].code;
-        if ((is_han(a) && is_western(b)) || (is_western(a) && is_han(b))) line[i].after = kBetweenScripts * kSide;
+        if ((is_han_or_kana(a) && is_western(b)) || (is_western(a) && is_han_or_kana(b)))
+            line[i].after = kBetweenScripts * kSide;
     }
 }
 
