@@ -336,5 +336,68 @@ TEST(Links, GapsUpToTheStylesLengthAreDrawn) {
     EXPECT_EQ(linked({a, near, far}, style).size(), 3u);
 }
 
+/// A straight stroke from `from` to `to`, 20 units wide to either side but for its ends.
+std::vector<Station> straight(Vec2 from, Vec2 to) {
+    std::vector<Station> s;
+    const auto n = static_cast<int>(glm::distance(from, to) / kStationsApart);
+    for (int i = 0; i <= n; ++i)
+        s.push_back({glm::mix(from, to, static_cast<double>(i) / n), i == 0 || i == n ? 3.0 : 20.0});
+    return s;
+}
+
+// The hand leaves a stroke the way it goes, and its tip is lifted between: widest at both joints, thinnest once
+// between, thinner where it goes farther.
+TEST(Links, LeaveAlongTheStrokeAndThinOutBetween) {
+    Style style;
+    style.link = 300;
+    double thinnest_before = 1e9;
+    for (const double gap : {80.0, 160.0}) {
+        const std::vector<Station> a = straight({0, 0}, {160, 0}), b = straight({160 + gap, 40}, {320 + gap, 40});
+        const auto joined = linked({a, b}, style);
+        ASSERT_EQ(joined.size(), 1u);
+        const std::vector<Station> link(joined[0].begin() + static_cast<std::ptrdiff_t>(a.size()),
+                                        joined[0].end() - static_cast<std::ptrdiff_t>(b.size()));
+        ASSERT_GE(link.size(), 4u);
+        const auto first = std::min_element(link.begin(), link.end(),
+                                            [](const Station& x, const Station& y) { return x.half < y.half; });
+        EXPECT_TRUE(std::is_sorted(link.begin(), first, [](auto& x, auto& y) { return x.half > y.half; }));
+        EXPECT_TRUE(std::is_sorted(first, link.end(), [](auto& x, auto& y) { return x.half < y.half; }));
+        EXPECT_LT(first->half, 0.6 * std::min(link.front().half, link.back().half));
+        EXPECT_LT(first->half, thinnest_before);
+        EXPECT_GE(joined[0][a.size() - 1].half, link.front().half);  // no neck at the joint
+        thinnest_before = first->half;
+        const Vec2 out = link[0].centre - a.back().centre, in = b.front().centre - link.back().centre;
+        EXPECT_LT(std::abs(out.y / out.x), 0.2);  // one of n stations of a curve that begins at 0
+        EXPECT_LT(std::abs(in.y / in.x), 0.2);
+    }
+}
+
+TEST(Links, AreNotDrawnWhereAHandTurnsRoundOrCrossesInk) {
+    Style style;
+    style.link = 180;
+    const std::vector<Station> level = straight({0, 0}, {160, 0}), below = straight({40, -100}, {200, -100}),
+                               under = straight({140, -40}, {300, -40}), on = straight({260, 0}, {420, 0}),
+                               across = straight({210, 150}, {210, -150});
+    EXPECT_EQ(linked({level, below}, style).size(), 2u);  // 156 units away, and turns by 280°
+    EXPECT_EQ(linked({level, under}, style).size(), 2u);  // 45 units for a turn by 230°
+    EXPECT_EQ(linked({level, on}, style).size(), 1u);     // 100 units straight on
+    std::vector<Station> bold = across;
+    for (Station& s : bold) s.half = 40;
+    EXPECT_EQ(linked({bold, level, on}, style).size(), 3u);
+}
+
+// A head that is set down across its stroke has no place where the tuft comes along a link.
+TEST(Links, TakeThePlaceOfAHeadSetDownAcross) {
+    Style style;
+    style.link = 200;
+    std::vector<Station> b = straight({260, 0}, {420, 0});
+    const std::vector<Station> cue = straight({260, 40}, {260, 0});
+    b.insert(b.begin(), cue.begin(), cue.end() - 1);
+    const auto joined = linked({straight({0, 0}, {160, 0}), b}, style);
+    ASSERT_EQ(joined.size(), 1u);
+    for (const Station& s : joined[0]) EXPECT_LT(s.centre.y, 20);
+    EXPECT_EQ(joined[0].back(), b.back());
+}
+
 }  // namespace
 }  // namespace tuft::writer

@@ -83,7 +83,14 @@ inline constexpr double kMedianStroke = 42;  ///< units, median width of strokes
 /// presets is nearer.
 std::optional<std::string> size_that_fits(const std::string& brush, double side);
 
-/// Joins the stations of consecutive strokes over gaps up to `style.link` by thin curves, and rounds corners.
+/// Rounds corners and joins consecutive strokes by curves that leave a stroke along its end and enter the next along
+/// its head. With g the gap and θ the angle by which a link turns from one to the other, a link is drawn where
+///
+///     g ≤ link (1 − 0.35 θ / 2π),  g ≥ 20 units · θ if θ > π / 2,
+///
+/// and at most a quarter of it lies over the ink of other strokes; elsewhere the brush is lifted. Its half width is 2.2
+/// `link_half` at both ends, and falls to `link_half` (1 − g / 2 link) at 0.55 of its way by the square of the distance
+/// from there. It takes the place of as much as 40 units of a head that lies more than 45° across its stroke.
 std::vector<std::vector<Station>> linked(std::vector<std::vector<Station>> strokes, const Style& style);
 
 }  // namespace tuft::writer

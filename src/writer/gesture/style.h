@@ -28,8 +28,8 @@ struct Style {
     double ends = 0.3, ease = 40;                ///< part of the speed at ends; units over which it rises
     int tries = kFitTries;                       ///< of the fit of a stroke
     double half_width = 18;                      ///< units; of `line`, and the edge of `nib`
-    double link = 0;                             ///< units: gaps up to this length are drawn as a thin line
-    double link_half = 5;                        ///< units, half width of that line
+    double link = 0;                             ///< units: gaps up to this length are drawn as thin lines
+    double link_half = 5;                        ///< units, half width in the middle of a short one
     double rounding = 0;                         ///< units over which corners are rounded
     double weight = 1;                           ///< factor of all half widths
     double slant = 0;                            ///< radians, letters lean to the right
