@@ -73,30 +73,24 @@ Part part_of(const ChartMesh& chart, std::span<const std::uint32_t> faces) {
     return part;
 }
 
-using Stiffness = LdltFactor::Matrix;
-
-/// Stiffness matrix Σ half_cot over edges, the lower half of the rows and columns of the vertices that move; `pinned`
-/// is what the others pull with.
-Stiffness stiffness(const Part& part, const std::vector<Vec2>& uv, std::vector<Vec2>& pinned) {
-    std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(3 * part.faces.size() + part.n_free);
-    std::vector<double> diagonal(part.vertex.size(), 0);
+/// Stiffness matrix Σ half_cot over edges, of the vertices that move; `pinned` is what the others pull with.
+SymmetricMatrix stiffness(const Part& part, const std::vector<Vec2>& uv, std::vector<Vec2>& pinned) {
+    SymmetricMatrix matrix;
+    matrix.entries.reserve(3 * part.faces.size());
+    matrix.diagonal.assign(part.vertex.size(), 0);
     pinned.assign(part.n_free, Vec2(0));
     for (std::size_t t = 0; t < part.faces.size(); ++t)
         for (int k = 0; k < 3; ++k) {
             const auto [i, j] = std::minmax(part.faces[t][k], part.faces[t][(k + 1) % 3]);
             const double w = part.references[t].half_cot[k];
-            diagonal[i] += w;
-            diagonal[j] += w;
+            matrix.diagonal[i] += w;
+            matrix.diagonal[j] += w;
             if (j < part.n_free)
-                entries.emplace_back(static_cast<int>(j), static_cast<int>(i), -w);
+                matrix.entries.push_back({j, i, -w});
             else if (i < part.n_free)
                 pinned[i] += w * uv[j];
         }
-    for (std::uint32_t v = 0; v < part.n_free; ++v)
-        entries.emplace_back(static_cast<int>(v), static_cast<int>(v), diagonal[v]);
-    Stiffness matrix(static_cast<Eigen::Index>(part.n_free), static_cast<Eigen::Index>(part.n_free));
-    matrix.setFromTriplets(entries.begin(), entries.end());
+    matrix.diagonal.resize(part.n_free);
     return matrix;
 }
 
@@ -179,9 +173,9 @@ double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& op
             if (options.should_stop(step)) break;
         }
         before = energy;
-        if (step == 0 && !factor.compute(stiffness(part, at, pinned))) break;
-        for (std::size_t v = 0; v < part.n_free; ++v) rhs[v] += pinned[v];
         const std::span<Vec2> moving = std::span(at).first(part.n_free);
+        if (step == 0 && !factor.compute(stiffness(part, at, pinned), moving)) break;
+        for (std::size_t v = 0; v < part.n_free; ++v) rhs[v] += pinned[v];
         std::copy_n(rhs.begin(), part.n_free, moving.begin());
         factor.solve(moving);
     }

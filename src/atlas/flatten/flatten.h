@@ -30,10 +30,8 @@ std::optional<std::vector<Vec2>> lscm(const ChartMesh& chart);
 /// alternating local and global steps [Liu2008]. `uv` is the start and the result. Returns its energy
 /// before the last step. With `faces`, only those move; the corners that they share with others are fixed.
 ///
-/// The matrix is factorised once (flatten/ldlt.h). Against CHOLMOD with AMD, with METIS and supernodal, unwrapping a
-/// car of 0.12, 0.48 and 1.1 million triangles took 0.90, 0.52 and 0.71 of the time with Eigen's simplicial L D Lᵀ, and
-/// without BLAS the bits do not depend on the CPU. Slivers get a minimum
-/// height so that their weights are finite.
+/// The matrix is factorised once (flatten/ldlt.h), in an order found from the start. Slivers get a minimum height so
+/// that their weights are finite.
 double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& options = {},
             std::span<const std::uint32_t> faces = {});
 /// Returns the energy of `arap` for given UVs.

@@ -1,157 +1,308 @@
 #include "atlas/flatten/ldlt.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "atlas/flatten/dissection.h"
+#include "core/simd.h"
 
 namespace tuft::atlas {
 namespace {
 
-constexpr int kColumnsAtOnce = 16;  // of a chain applied together
-constexpr int kRowsAtOnce = 8;      // of them at a time
+constexpr std::uint32_t kLanes = 4;     // rows that are computed together
+constexpr std::uint32_t kPanel = 32;    // pivots that are applied together to the columns after them
+constexpr std::uint32_t kTogether = 8;  // of these columns at a time
 
-/// Columns of L with the same rows from some row on, and their numbers in the row being solved.
-struct Columns {
-    std::array<const double*, kColumnsAtOnce> values;
-    std::array<double, kColumnsAtOnce> factors;
-    int n = 0;
-};
+/// The numbers of kLanes rows, anywhere in memory.
+using Lanes [[gnu::vector_size(kLanes * sizeof(double)), gnu::aligned(sizeof(double)), gnu::may_alias]] = double;
 
-/// y[row[p]] −= Σ values[c][p] factors[c], column after column for each row.
-void subtract_columns(const Columns& columns, const int* row, int n_rows, double* y) {
-    int p = 0;
-    for (; p + kRowsAtOnce <= n_rows; p += kRowsAtOnce) {
-        std::array<double, kRowsAtOnce> sum;
-        for (int r = 0; r < kRowsAtOnce; ++r) sum[r] = y[row[p + r]];
-        for (int c = 0; c < columns.n; ++c) {
-            const double* value = columns.values[c] + p;
-            const double factor = columns.factors[c];
-            for (int r = 0; r < kRowsAtOnce; ++r) sum[r] -= value[r] * factor;
-        }
-        for (int r = 0; r < kRowsAtOnce; ++r) y[row[p + r]] = sum[r];
+[[gnu::always_inline]] inline Lanes& lanes(double* at) {
+    return *reinterpret_cast<Lanes*>(at);
+}
+[[gnu::always_inline]] inline const Lanes& lanes(const double* at) {
+    return *reinterpret_cast<const Lanes*>(at);
+}
+
+constexpr std::uint32_t rounded_up(std::uint32_t n) {
+    return (n + kLanes - 1) / kLanes * kLanes;
+}
+
+Neighbours neighbours_of(const SymmetricMatrix& matrix) {
+    Neighbours graph;
+    graph.start.assign(matrix.diagonal.size() + 1, 0);
+    for (const SymmetricMatrix::Entry& e : matrix.entries) {
+        ++graph.start[e.row + 1];
+        ++graph.start[e.column + 1];
     }
-    for (; p < n_rows; ++p) {
-        double sum = y[row[p]];
-        for (int c = 0; c < columns.n; ++c) sum -= columns.values[c][p] * columns.factors[c];
-        y[row[p]] = sum;
+    for (std::size_t i = 0; i + 1 < graph.start.size(); ++i) graph.start[i + 1] += graph.start[i];
+    graph.neighbours.resize(2 * matrix.entries.size());
+    std::vector<std::uint32_t> next(graph.start.begin(), graph.start.end() - 1);
+    for (const SymmetricMatrix::Entry& e : matrix.entries) {
+        graph.neighbours[next[e.row]++] = e.column;
+        graph.neighbours[next[e.column]++] = e.row;
+    }
+    return graph;
+}
+
+/// Eliminates one pivot after the other from the columns of a panel, [begin, end), of a front. What is stored of a
+/// column afterwards is L's.
+[[gnu::always_inline]] inline bool eliminate_panel(double* f, std::uint32_t stride, std::uint32_t begin,
+                                                   std::uint32_t end, double* inverse, double* pivots) {
+    std::array<double, kPanel> factor;
+    for (std::uint32_t j = begin; j < end; ++j) {
+        double* const column = f + std::size_t{j} * stride;
+        const double pivot = column[j];
+        if (pivot == 0 || !std::isfinite(pivot)) return false;
+        pivots[j - begin] = pivot;
+        inverse[j] = 1 / pivot;
+        for (std::uint32_t c = j + 1; c < end; ++c) factor[c - begin] = column[c];
+        std::fill_n(column, j + 1, 0);
+        const std::uint32_t from = j / kLanes * kLanes;
+        for (std::uint32_t i = from; i < stride; i += kLanes) lanes(column + i) *= inverse[j];
+        for (std::uint32_t c = j + 1; c < end; ++c) {
+            double* const other = f + std::size_t{c} * stride;
+            for (std::uint32_t i = from; i < stride; i += kLanes)
+                lanes(other + i) -= lanes(column + i) * factor[c - begin];
+        }
+    }
+    return true;
+}
+
+/// other[c][i] −= Σ_p column[p][i] weight[c][p] for n columns from row `from` on, a multiple of kLanes.
+template <std::uint32_t n>
+[[gnu::always_inline]] inline void subtract_panel(const double* columns, std::uint32_t n_columns, const double* weights,
+                                                  double* others, std::size_t stride, std::uint32_t from) {
+    for (std::uint32_t i = from; i < stride; i += kLanes) {
+        Lanes sum[n];
+        for (std::uint32_t c = 0; c < n; ++c) sum[c] = lanes(others + c * stride + i);
+        for (std::uint32_t p = 0; p < n_columns; ++p) {
+            const Lanes column = lanes(columns + p * stride + i);
+            for (std::uint32_t c = 0; c < n; ++c) sum[c] -= column * weights[c * kPanel + p];
+        }
+        for (std::uint32_t c = 0; c < n; ++c) lanes(others + c * stride + i) = sum[c];
+    }
+}
+
+/// Eliminates the pivots of a front with n rows, of which the lower half is given, from all its columns.
+TUFT_CLONES bool eliminate(double* f, std::uint32_t stride, std::uint32_t n, std::uint32_t n_pivots, double* inverse) {
+    std::array<double, kPanel> pivots;
+    std::array<double, kTogether * kPanel> weights;
+    for (std::uint32_t begin = 0; begin < n_pivots; begin += kPanel) {
+        const std::uint32_t end = std::min(begin + kPanel, n_pivots);
+        if (!eliminate_panel(f, stride, begin, end, inverse, pivots.data())) return false;
+        const double* const columns = f + std::size_t{begin} * stride;
+        for (std::uint32_t c = end; c < n; c += kTogether) {
+            const std::uint32_t m = std::min(kTogether, n - c);
+            for (std::uint32_t k = 0; k < m; ++k)
+                for (std::uint32_t p = begin; p < end; ++p)
+                    weights[k * kPanel + p - begin] = f[std::size_t{p} * stride + c + k] * pivots[p - begin];
+            double* const others = f + std::size_t{c} * stride;
+            const std::uint32_t from = c / kLanes * kLanes;
+            if (m == kTogether)
+                subtract_panel<kTogether>(columns, end - begin, weights.data(), others, stride, from);
+            else
+                for (std::uint32_t k = 0; k < m; ++k)
+                    subtract_panel<1>(columns, end - begin, weights.data() + k * kPanel,
+                                      others + std::size_t{k} * stride, stride, from);
+        }
+    }
+    return true;
+}
+
+/// Takes what is known of the first rows out of those below them.
+TUFT_CLONES void substitute_down(const double* column, std::size_t stride, std::uint32_t n_columns, double* x,
+                                 double* y) {
+    for (std::uint32_t j = 0; j < n_columns; ++j, column += stride) {
+        const double xj = x[j], yj = y[j];
+        for (std::size_t i = j / kLanes * kLanes; i < stride; i += kLanes) {
+            lanes(x + i) -= lanes(column + i) * xj;
+            lanes(y + i) -= lanes(column + i) * yj;
+        }
+    }
+}
+
+[[gnu::always_inline]] inline double sum_of(const Lanes& v) {
+    return (v[0] + v[2]) + (v[1] + v[3]);
+}
+
+/// Takes what is known of the last rows out of the first ones.
+TUFT_CLONES void substitute_up(const double* columns, std::size_t stride, std::uint32_t n_columns, double* x,
+                               double* y) {
+    for (std::uint32_t j = n_columns; j-- > 0;) {
+        const double* const column = columns + j * stride;
+        Lanes xs{}, ys{};
+        for (std::size_t i = j / kLanes * kLanes; i < stride; i += kLanes) {
+            xs += lanes(column + i) * lanes(x + i);
+            ys += lanes(column + i) * lanes(y + i);
+        }
+        x[j] -= sum_of(xs);
+        y[j] -= sum_of(ys);
     }
 }
 
 }  // namespace
 
-bool LdltFactor::compute(const Matrix& lower) {
-    Matrix buffer(lower.rows(), lower.cols());
-    const Matrix* upper = nullptr;
-    ordering(lower, upper, buffer);
-    analyzePattern_preordered(*upper, true);
-    return factorise(*upper);
-}
+/// The matrix in the order of elimination: of each row the entries in later columns.
+struct LdltFactor::Rows {
+    std::vector<double> diagonal;
+    std::vector<std::size_t> start;
+    std::vector<std::uint32_t> column;
+    std::vector<double> value;
 
-// Columns of row k of L in topological order, at the end of `pattern_` from the index returned on; puts the row of the
-// matrix into `row_`.
-int LdltFactor::find_pattern(const Matrix& upper, int k) {
-    const int n = static_cast<int>(upper.rows());
-    int top = n;
-    row_[k] = 0;
-    met_[k] = k;
-    for (Matrix::InnerIterator entry(upper, k); entry; ++entry) {
-        int i = static_cast<int>(entry.index());
-        if (i > k) continue;
-        row_[i] += entry.value();
-        int length = 0;
-        for (; met_[i] != k; i = m_parent[i]) {
-            pattern_[length++] = i;
-            met_[i] = k;
+    Rows(const SymmetricMatrix& matrix, const std::vector<std::uint32_t>& place)
+        : diagonal(place.size()),
+          start(place.size() + 1, 0),
+          column(matrix.entries.size()),
+          value(matrix.entries.size()) {
+        for (std::size_t i = 0; i < place.size(); ++i) diagonal[place[i]] = matrix.diagonal[i];
+        for (const SymmetricMatrix::Entry& e : matrix.entries) ++start[std::min(place[e.row], place[e.column]) + 1];
+        for (std::size_t i = 0; i < place.size(); ++i) start[i + 1] += start[i];
+        std::vector<std::size_t> next(start.begin(), start.end() - 1);
+        for (const SymmetricMatrix::Entry& e : matrix.entries) {
+            const auto [row, later] = std::minmax(place[e.row], place[e.column]);
+            column[next[row]] = later;
+            value[next[row]++] = e.value;
         }
-        while (length > 0) pattern_[--top] = pattern_[--length];
     }
-    return top;
-}
+};
 
-// Number of columns from pattern_[top] on that are each other's parents and have the same rows below.
-int LdltFactor::chain_length(int top) const {
-    const int* start = m_matrix.outerIndexPtr();
-    const int most = std::min(kColumnsAtOnce, static_cast<int>(pattern_.size()) - top);
-    int length = 1;
-    for (int i = pattern_[top]; length < most; ++length) {
-        const int next = pattern_[top + length];
-        if (m_parent[i] != next || start[i + 1] - start[i] != start[next + 1] - start[next] + 1) break;
-        i = next;
-    }
-    return length;
-}
+/// What fronts leave of the columns beyond their pivots, until their parents take it.
+struct LdltFactor::Stack {
+    std::vector<double> values;           ///< column by column, the lower half of a square each
+    std::vector<std::uint32_t> fronts;    ///< whose they are
+    std::vector<std::uint32_t> in_front;  ///< of each row of L: its row in the front being assembled
+};
 
-// Solves for the entries of row k in some columns with the same rows, and takes them out of the rest of the row and of
-// its pivot d.
-double LdltFactor::apply_chain(int k, int top, int length, double d) {
-    const int* start = m_matrix.outerIndexPtr();
-    int* rows = m_matrix.innerIndexPtr();
-    double* values = m_matrix.valuePtr();
-    double* const y = row_.data();
-    const int* const chain = pattern_.data() + top;
-    Columns columns{.values = {}, .factors = {}, .n = length};
-    for (int c = 0; c < length; ++c) {
-        const int i = chain[c];
-        const double value = columns.factors[c] = y[i];
-        y[i] = 0;
-        // Its first rows are those of the chain's columns after it.
-        for (int next = c + 1; next < length; ++next) y[chain[next]] -= values[start[i] + next - c - 1] * value;
-        columns.values[c] = values + start[i] + (length - 1 - c);
-    }
-    const int last = chain[length - 1];
-    subtract_columns(columns, rows + start[last], m_nonZerosPerCol[last], y);
-    for (int c = 0; c < length; ++c) {
-        const int i = chain[c];
-        const double value = columns.factors[c], entry = value / m_diag[i];
-        d -= entry * value;
-        const int end = start[i] + m_nonZerosPerCol[i]++;
-        rows[end] = k;
-        values[end] = entry;
-    }
-    return d;
-}
-
-// Row by row (up-looking; Davis 2005), as Eigen does.
-bool LdltFactor::factorise(const Matrix& upper) {
-    const int n = static_cast<int>(upper.rows());
-    m_diag.resize(n);
-    row_.assign(static_cast<std::size_t>(n), 0);
-    pattern_.assign(static_cast<std::size_t>(n), 0);
-    met_.assign(static_cast<std::size_t>(n), 0);
-    for (int k = 0; k < n; ++k) {
-        m_nonZerosPerCol[k] = 0;
-        int top = find_pattern(upper, k);
-        double d = row_[k];
-        row_[k] = 0;
-        while (top < n) {
-            const int length = chain_length(top);
-            d = apply_chain(k, top, length, d);
-            top += length;
+void LdltFactor::find_fronts(const Rows& rows) {
+    beyond_.clear();
+    std::vector<std::uint32_t> met(place_.size(), 0), roots;
+    std::size_t size = 0;
+    for (std::uint32_t s = 0; s < fronts_.size(); ++s) {
+        Front& front = fronts_[s];
+        const std::uint32_t last = front.first + front.n_pivots;
+        front.beyond = beyond_.size();
+        const auto meet = [&](std::uint32_t row) {
+            if (row < last || std::exchange(met[row], s + 1) == s + 1) return;
+            beyond_.push_back(row);
+        };
+        for (std::size_t i = rows.start[front.first]; i < rows.start[last]; ++i) meet(rows.column[i]);
+        for (std::uint32_t c = 0; c < front.n_children; ++c) {
+            const Front& child = fronts_[roots.back()];
+            roots.pop_back();
+            for (std::size_t i = 0; i < child.n_beyond; ++i) meet(beyond_[child.beyond + i]);
         }
-        m_diag[k] = d;
-        if (d == 0 || !std::isfinite(d)) return false;
+        roots.push_back(s);
+        std::sort(beyond_.begin() + static_cast<std::ptrdiff_t>(front.beyond), beyond_.end());
+        front.n_beyond = static_cast<std::uint32_t>(beyond_.size() - front.beyond);
+        front.stride = rounded_up(front.n_pivots + front.n_beyond);
+        front.values = size;
+        size += std::size_t{front.n_pivots} * front.stride;
+    }
+    values_.resize(size);
+}
+
+/// Makes the lower half of the front from the matrix and what its children left.
+void LdltFactor::assemble(const Rows& rows, const Front& front, Stack& stack) {
+    const std::size_t stride = front.stride;
+    dense_.assign(stride * (front.n_pivots + front.n_beyond), 0);
+    for (std::uint32_t i = 0; i < front.n_pivots; ++i) stack.in_front[front.first + i] = i;
+    for (std::uint32_t i = 0; i < front.n_beyond; ++i) stack.in_front[beyond_[front.beyond + i]] = front.n_pivots + i;
+    for (std::uint32_t j = 0; j < front.n_pivots; ++j) {
+        double* const column = dense_.data() + j * stride;
+        column[j] = rows.diagonal[front.first + j];
+        for (std::size_t i = rows.start[front.first + j]; i < rows.start[front.first + j + 1]; ++i)
+            column[stack.in_front[rows.column[i]]] += rows.value[i];
+    }
+    for (std::uint32_t c = 0; c < front.n_children; ++c) {
+        const Front& child = fronts_[stack.fronts.back()];
+        stack.fronts.pop_back();
+        const std::size_t n = child.n_beyond;
+        const std::uint32_t* const row = beyond_.data() + child.beyond;
+        const double* const left = stack.values.data() + stack.values.size() - n * n;
+        for (std::size_t j = 0; j < n; ++j) {
+            double* const column = dense_.data() + stack.in_front[row[j]] * stride;
+            for (std::size_t i = j; i < n; ++i) column[stack.in_front[row[i]]] += left[j * n + i];
+        }
+        stack.values.resize(stack.values.size() - n * n);
+    }
+}
+
+bool LdltFactor::compute(SymmetricMatrix matrix, std::span<const Vec2> at) {
+    const Dissection dissection = dissect(neighbours_of(matrix), at);
+    const std::size_t n = matrix.diagonal.size();
+    place_.resize(n);
+    for (std::uint32_t i = 0; i < n; ++i) place_[dissection.order[i]] = i;
+    fronts_.clear();
+    for (const Dissection::Part& part : dissection.parts)
+        fronts_.push_back({.first = part.first, .n_pivots = part.n, .n_children = part.n_children});
+    const Rows rows(matrix, place_);
+    matrix = {};
+    find_fronts(rows);
+    inverse_.resize(n);
+    Stack stack;
+    stack.in_front.resize(n);
+    for (std::uint32_t s = 0; s < fronts_.size(); ++s) {
+        const Front& front = fronts_[s];
+        const std::uint32_t size = front.n_pivots + front.n_beyond;
+        assemble(rows, front, stack);
+        if (!eliminate(dense_.data(), front.stride, size, front.n_pivots, inverse_.data() + front.first)) return false;
+        std::memcpy(values_.data() + front.values, dense_.data(),
+                    sizeof(double) * front.n_pivots * std::size_t{front.stride});
+        for (std::uint32_t c = front.n_pivots; c < size; ++c) {
+            const double* const column = dense_.data() + c * std::size_t{front.stride};
+            stack.values.insert(stack.values.end(), column + front.n_pivots, column + size);
+        }
+        stack.fronts.push_back(s);
     }
     return true;
 }
 
 void LdltFactor::solve(std::span<Vec2> x) {
-    const int n = static_cast<int>(x.size());
-    const int *start = m_matrix.outerIndexPtr(), *row = m_matrix.innerIndexPtr();
-    const double* value = m_matrix.valuePtr();
-    const int* place = m_P.indices().data();
-    permuted_.resize(x.size());
-    Vec2* const y = permuted_.data();
-    for (int i = 0; i < n; ++i) y[place[i]] = x[i];
-    for (int j = 0; j < n; ++j) {
-        const Vec2 known = y[j];
-        for (int k = start[j]; k < start[j + 1]; ++k) y[row[k]] -= known * value[k];
+    x_.resize(x.size());
+    y_.resize(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        x_[place_[i]] = x[i].x;
+        y_[place_[i]] = x[i].y;
     }
-    for (int i = 0; i < n; ++i) y[i] *= 1 / m_diag[i];
-    for (int j = n - 1; j >= 0; --j) {
-        Vec2 sum = y[j];
-        for (int k = start[j]; k < start[j + 1]; ++k) sum -= value[k] * y[row[k]];
-        y[j] = sum;
+    std::uint32_t largest = 0;
+    for (const Front& front : fronts_) largest = std::max(largest, front.stride);
+    x_front_.resize(largest);
+    y_front_.resize(largest);
+    for (const Front& front : fronts_) {
+        std::fill_n(x_front_.begin(), front.stride, 0);
+        std::fill_n(y_front_.begin(), front.stride, 0);
+        std::copy_n(x_.begin() + front.first, front.n_pivots, x_front_.begin());
+        std::copy_n(y_.begin() + front.first, front.n_pivots, y_front_.begin());
+        substitute_down(values_.data() + front.values, front.stride, front.n_pivots, x_front_.data(), y_front_.data());
+        for (std::uint32_t i = 0; i < front.n_pivots; ++i) {
+            x_[front.first + i] = x_front_[i] * inverse_[front.first + i];
+            y_[front.first + i] = y_front_[i] * inverse_[front.first + i];
+        }
+        for (std::uint32_t i = 0; i < front.n_beyond; ++i) {
+            const std::uint32_t row = beyond_[front.beyond + i];
+            x_[row] += x_front_[front.n_pivots + i];
+            y_[row] += y_front_[front.n_pivots + i];
+        }
     }
-    for (int i = 0; i < n; ++i) x[i] = y[place[i]];
+    for (std::size_t s = fronts_.size(); s-- > 0;) {
+        const Front& front = fronts_[s];
+        std::fill_n(x_front_.begin(), front.stride, 0);
+        std::fill_n(y_front_.begin(), front.stride, 0);
+        std::copy_n(x_.begin() + front.first, front.n_pivots, x_front_.begin());
+        std::copy_n(y_.begin() + front.first, front.n_pivots, y_front_.begin());
+        for (std::uint32_t i = 0; i < front.n_beyond; ++i) {
+            const std::uint32_t row = beyond_[front.beyond + i];
+            x_front_[front.n_pivots + i] = x_[row];
+            y_front_[front.n_pivots + i] = y_[row];
+        }
+        substitute_up(values_.data() + front.values, front.stride, front.n_pivots, x_front_.data(), y_front_.data());
+        std::copy_n(x_front_.begin(), front.n_pivots, x_.begin() + front.first);
+        std::copy_n(y_front_.begin(), front.n_pivots, y_.begin() + front.first);
+    }
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = {x_[place_[i]], y_[place_[i]]};
 }
 
 }  // namespace tuft::atlas
