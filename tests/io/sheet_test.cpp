@@ -174,6 +174,19 @@ TEST_F(SheetFiles, DxfHasClosedPolylinesOnNamedLayers) {
     EXPECT_EQ(pairs.back(), (std::pair<int, std::string>{0, "EOF"}));
 }
 
+// 4: millimetres, 1: metric (DXF reference, header variables).
+TEST_F(SheetFiles, DxfHeaderSaysMillimetres) {
+    const fs::path path = folder_ / "sheet.dxf";
+    write_sheet(path, sample(false));
+    std::map<std::string, std::string> header;
+    const auto pairs = dxf_pairs(text_of(path));
+    for (std::size_t i = 0; i + 1 < pairs.size(); ++i)
+        if (pairs[i].first == 9) header[pairs[i].second] = pairs[i + 1].second;
+    EXPECT_EQ(header["$ACADVER"], "AC1009");
+    EXPECT_EQ(header["$INSUNITS"], "4");
+    EXPECT_EQ(header["$MEASUREMENT"], "1");
+}
+
 TEST_F(SheetFiles, SeveralPagesAreNumberedFilesAndAllOrNone) {
     decal::Sheet sheet = sample(false);
     sheet.pages.push_back(sheet.pages[0]);

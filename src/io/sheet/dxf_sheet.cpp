@@ -23,6 +23,13 @@ std::string pair(int code, double value) {
     return pair(code, fmt::format("{:.5f}", value));
 }
 
+/// That lengths are decimal millimetres. R12 knows no unit of the drawing. These are the variables of later releases, 4
+/// millimetres and 1 metric, which readers look for in files of any release, and others pass over.
+std::string header_units() {
+    return pair(9, "$LUNITS") + pair(70, "2") + pair(9, "$MEASUREMENT") + pair(70, "1") + pair(9, "$INSUNITS") +
+           pair(70, "4");
+}
+
 std::string polyline(const decal::Line& line, const char* layer) {
     std::string text = pair(0, "POLYLINE") + pair(8, layer) + pair(66, "1") + pair(10, 0.0) + pair(20, 0.0) +
                        pair(30, 0.0) + pair(70, line.closed ? "1" : "0");
@@ -37,7 +44,7 @@ std::string dxf_text(const decal::Page& page) {
     std::string text = pair(999, "decal sheet, millimetres, true size") + pair(0, "SECTION") + pair(2, "HEADER") +
                        pair(9, "$ACADVER") + pair(1, "AC1009") + pair(9, "$EXTMIN") + pair(10, 0.0) + pair(20, 0.0) +
                        pair(30, 0.0) + pair(9, "$EXTMAX") + pair(10, kMm * page.size.x) + pair(20, kMm * page.size.y) +
-                       pair(30, 0.0) + pair(0, "ENDSEC");
+                       pair(30, 0.0) + header_units() + pair(0, "ENDSEC");
     text += pair(0, "SECTION") + pair(2, "TABLES") + pair(0, "TABLE") + pair(2, "LTYPE") + pair(70, "1") +
             pair(0, "LTYPE") + pair(2, "CONTINUOUS") + pair(70, "0") + pair(3, "Solid line") + pair(72, "65") +
             pair(73, "0") + pair(40, 0.0) + pair(0, "ENDTAB");
