@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "app/document/pictures/state_folder.h"
 #include "models.h"
@@ -15,12 +16,32 @@
 namespace tuft::app {
 namespace {
 
+/// A state folder of its own while it lives.
+class OwnStateFolder {
+  public:
+    OwnStateFolder() {
+        if (const char* before = std::getenv("XDG_STATE_HOME")) before_ = before;
+        setenv("XDG_STATE_HOME", path_.c_str(), 1);
+    }
+    ~OwnStateFolder() {
+        std::filesystem::remove_all(path_);
+        if (before_)
+            setenv("XDG_STATE_HOME", before_->c_str(), 1);
+        else
+            unsetenv("XDG_STATE_HOME");
+    }
+    OwnStateFolder(const OwnStateFolder&) = delete;
+    OwnStateFolder& operator=(const OwnStateFolder&) = delete;
+
+  private:
+    const std::filesystem::path path_ =
+        std::filesystem::path(testing::TempDir()) / ("tuft_lost_" + std::to_string(getpid()));
+    std::optional<std::string> before_;
+};
+
 TEST(LostWork, TheLatestIsOfferedFirst) {
     namespace fs = std::filesystem;
-    const fs::path state = fs::path(testing::TempDir()) / ("tuft_lost_" + std::to_string(getpid()));
-    const char* before = std::getenv("XDG_STATE_HOME");
-    const std::string kept = before ? before : "";
-    setenv("XDG_STATE_HOME", state.c_str(), 1);
+    const OwnStateFolder state;
     const fs::path sessions = state_folder() / "sessions";
     fs::create_directories(sessions);
     const auto now = fs::file_time_type::clock::now();
@@ -35,11 +56,6 @@ TEST(LostWork, TheLatestIsOfferedFirst) {
     ASSERT_EQ(lost.size(), hours_ago.size());
     for (std::size_t i = 0; i < lost.size(); ++i) EXPECT_EQ(lost[i].project.stem(), std::to_string(i));
     EXPECT_EQ(lost[0].changed - lost[2].changed, 2 * 3600);
-    fs::remove_all(state);
-    if (before)
-        setenv("XDG_STATE_HOME", kept.c_str(), 1);
-    else
-        unsetenv("XDG_STATE_HOME");
 }
 
 /// No file may grow beyond `bytes` while it lives, as on a full disk.

@@ -327,6 +327,27 @@ TEST_F(PointerOnSheet, TheTipLagFollowsATurnOfTheStrokeAsInATrace) {
     }
 }
 
+TEST_F(PointerOnSheet, ABladeTurnsWithItsHairAsInATrace) {
+    const brush::Preset sword = brush::load_preset("sword-8");
+    const double string = stroke::holder_options(sword, *mesh_).tip_lag_turn;
+    PointerInput hand(*query_, sword, {.smoothing = 1e-6, .roll_follow = true}, {.upright = {{0, 0}, {0.02, 0}}});
+    // Along a circle at 0.05 m/s, anticlockwise from the right.
+    constexpr double kRadius = 0.02;
+    std::vector<brush::Pose> poses;
+    for (int i = 0; i < 400; ++i) {
+        const double a = 2e-4 * i / kRadius;
+        for (const StrokeStep& step : hand.move(above(kRadius * std::cos(a), kRadius * std::sin(a), 0.004 * i)))
+            poses.insert(poses.end(), step.poses.begin(), step.poses.end());
+    }
+    ASSERT_GT(poses.size(), 300u);
+    // The broad side across the path lies along the radius, by `a`. The hand lags by asin(λ / R) (gesture/roll.h), the
+    // blade by string / R more.
+    const double a = 2e-4 * 399 / kRadius, lag = std::asin(stroke::kRollLag / kRadius) + string / kRadius;
+    // The path is a polygon of 0.2 mm and the cursor is smoothed over a frame.
+    EXPECT_NEAR(std::remainder(broad_side(poses.back()) - (a - lag), std::numbers::pi), 0, 4e-3);
+    EXPECT_GT(string / kRadius, 3 * 4e-3) << "which the blade's own lag exceeds";
+}
+
 TEST_F(PointerOnSheet, ATurnOfThePenTurnsTheTuftAboutItsHolder) {
     const PointerInput hand(*query_, preset_, {});
     Aim aim = above(0, 0, 0, 0.5);

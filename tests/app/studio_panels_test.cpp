@@ -261,6 +261,7 @@ TEST_F(Panels, QuittingDoesNotWaitForAPreviewThatADiskNeverGives) {
     const Ran ran = studio(kBowl + "set tool writing\nwait 0.1\nclick \"Writing or drawing...\"\nwait 0.2\nclick " +
                            "\"file name\"\nkey ctrl+a\ntype " + folder_.string() +
                            "\nkey enter\nwait 0.2\nclick slow.svg\nwait 0.3\nexpect label Preview\n");
+    EXPECT_EQ(::fcntl(file, F_GETLEASE), F_RDLCK) << "the preview has asked for the file";
     // Would wait still: the lease is neither given back nor has its time run out.
     EXPECT_EQ(::open(path("slow.svg").c_str(), O_RDONLY | O_NONBLOCK), -1);
     EXPECT_EQ(errno, EWOULDBLOCK);

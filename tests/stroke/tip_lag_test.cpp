@@ -152,7 +152,7 @@ TEST(TipLag, IsMeasuredOncePerPresetAndTakenFromTheCacheToTheBit) {
     const std::size_t n = entries().size();
     EXPECT_EQ(n, 3u) << "as held, and turned by the two nodes beside";
     // What is read counts as used: the cache dates it anew.
-    const auto past = fs::file_time_type::clock::now() - std::chrono::hours(1);
+    const fs::file_time_type past = fs::last_write_time(folder) - std::chrono::hours(1);
     for (const fs::directory_entry& entry : entries()) fs::last_write_time(entry, past);
     EXPECT_EQ(values_of(second), measured);
     for (const fs::directory_entry& entry : entries()) EXPECT_GT(fs::last_write_time(entry), past);

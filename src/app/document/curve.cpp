@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/ease.h"
 #include "stroke/gesture/roll.h"
@@ -59,6 +60,8 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
     const auto n = static_cast<std::size_t>(std::max(2.0, std::ceil(length / step)));
     std::vector<stroke::SurfaceSample> samples;
     stroke::RollFollower follower;
+    std::optional<stroke::BladeRoll> blade;
+    std::optional<stroke::FollowedTurn> hair;  // as in stroke::compensate_tip_lag
     for (std::size_t i = 0; i <= n; ++i) {
         const double part = static_cast<double>(i) / static_cast<double>(n), s = curve.front().along + part * length;
         const double press = hand.pressure * at_length(curve, s).pressure *
@@ -77,16 +80,26 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
                                      .pressure = press,
                                      .tilt = hand.tilt,
                                      .roll = hand.roll};
+        const Vec3 gone = samples.empty() ? Vec3(0) : place.position - samples.back().position;
         if (hand.roll_follow) {
-            const Vec3 gone = samples.empty() ? Vec3(0) : place.position - samples.back().position;
             sample.roll += stroke::follow_stroke(follower, 0, {glm::dot(gone, axes.right), glm::dot(gone, axes.down)});
         }
         if (glm::length(ahead) > 1e-9) {
+            const Vec2 way = glm::normalize(ahead);
             if (hand.holder.lean > 0 && hand.tilt == Vec2(0))
-                sample.tilt = stroke::lean_of_make(hand.holder, sample.roll, glm::normalize(ahead));
-            if (press > 0)
-                sample.tip_lag =
-                    stroke::tip_lag_at(hand.holder, press, sample.tilt, sample.roll, glm::normalize(ahead));
+                sample.tilt = stroke::lean_of_make(hand.holder, sample.roll, way);
+            if (hand.holder.blade_landing > 0) {
+                if (!blade) blade.emplace(hand.holder.tip_lag_turn, sample.roll);
+                blade->follow(sample.roll, glm::length(gone));
+                sample.roll = blade->roll();
+            }
+            double turned = sample.roll;
+            if (hand.holder.turned) {
+                const double angle = std::atan2(-way.y, way.x);
+                if (!hair) hair.emplace(hand.holder.tuft_length, sample.roll - angle);
+                turned = hair->follow(sample.roll - angle, glm::length(gone)) + angle;
+            }
+            if (press > 0) sample.tip_lag = stroke::tip_lag_at(hand.holder, press, sample.tilt, turned, way);
         }
         if (const auto on = query.closest_point(place.position, 0.01)) {
             sample.on = *on;

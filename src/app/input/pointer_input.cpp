@@ -239,6 +239,10 @@ double PointerInput::roll_at(const Aim& aim) const {
     return settings_.roll + (settings_.roll_follow && follower_.started ? follower_.roll : -aim.turn);
 }
 
+double PointerInput::roll_of_ferrule(const Aim& aim) const {
+    return blade_ ? blade_->roll() : roll_at(aim);
+}
+
 // A wide ferrule has its broad side across the view; a round one lies as it may.
 Quat PointerInput::rotation_at(const Aim& aim, const Vec3& normal, const Vec3& up) const {
     const auto turned = [](const Quat& q, double roll) {
@@ -249,7 +253,7 @@ Quat PointerInput::rotation_at(const Aim& aim, const Vec3& normal, const Vec3& u
         return turned(glm::normalize(glm::quat_cast(Mat3(f.t, f.b, f.n))), -aim.turn);
     }
     const Vec3 x = parallel_transport(stroke::axes_across(normal, aim.view_right, -aim.view_up).right, normal, up);
-    return turned(glm::normalize(glm::quat_cast(Mat3(x, glm::cross(up, x), up))), roll_at(aim));
+    return turned(glm::normalize(glm::quat_cast(Mat3(x, glm::cross(up, x), up))), roll_of_ferrule(aim));
 }
 
 // The holder has gone on: it turns as the pen does, and after its stroke. Its hair follows.
@@ -258,6 +262,10 @@ void PointerInput::turn_holder(const Aim& aim, const Vec3& motion) {
     const stroke::Axes axes = stroke::axes_across(normal_, aim.view_right, -aim.view_up);
     if (settings_.roll_follow)
         stroke::follow_stroke(follower_, -aim.turn, {glm::dot(motion, axes.right), glm::dot(motion, axes.down)});
+    if (holder_.blade_landing > 0 && is_clean(aim)) {
+        if (!blade_) blade_.emplace(holder_.tip_lag_turn, roll_at(aim));
+        blade_->follow(roll_at(aim), glm::length(motion));
+    }
     const Vec2 ahead{glm::dot(dragged_.string, axes.right), glm::dot(dragged_.string, axes.down)};
     if (!holder_.turned || glm::length(ahead) < 1e-9) return;
     const double turn = roll_at(aim) - std::atan2(-ahead.y, ahead.x);
@@ -273,7 +281,7 @@ Vec3 PointerInput::ahead_of(const Aim& aim, const Vec3& normal, double pressure)
     const Vec2 ahead{glm::dot(dragged_.string, axes.right), glm::dot(dragged_.string, axes.down)};
     if (glm::length(ahead) < 1e-9) return Vec3(0);
     const Vec2 tilt = settings_.tilt + lean_of_make(aim, normal);
-    const double roll = turn_ ? turn_->turn() + std::atan2(-ahead.y, ahead.x) : roll_at(aim);
+    const double roll = turn_ ? turn_->turn() + std::atan2(-ahead.y, ahead.x) : roll_of_ferrule(aim);
     const Vec2 lag = taut * stroke::tip_lag_at(holder_, pressure, {tilt.x, -tilt.y}, roll, glm::normalize(ahead));
     const double spread = pressure * spread_ * (1 - smooth_step(gone_ / (kSpreadGone * holder_.tuft_length)));
     return lag.x * axes.right + lag.y * axes.down + spread * dragged_.string;
@@ -311,6 +319,7 @@ void PointerInput::pen_down(const Aim& aim, const AimedSurface& hit, const Vec3&
     spread_ = 0;
     follower_ = {};
     turn_.reset();
+    blade_.reset();
     dragged_ = {point_ - holder_.tip_lag_turn * towards, towards};
     turn_holder(aim, Vec3(0));
     const Vec3 leans = towards != Vec3(0) ? towards : across(aim);
@@ -494,6 +503,7 @@ std::vector<StrokeStep> PointerInput::lift() {
     }
     down_ = false;
     follower_ = {};
+    blade_.reset();
     steps.push_back(std::move(step));
     steps.push_back({StrokeStep::Kind::end, {}});
     return steps;

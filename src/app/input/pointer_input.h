@@ -130,6 +130,7 @@ class PointerInput {
     brush::Pose pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure, double time) const;
     Quat rotation_at(const Aim& aim, const Vec3& normal, const Vec3& up) const;
     double roll_at(const Aim& aim) const;
+    double roll_of_ferrule(const Aim& aim) const;
     Vec3 across(const Aim& aim) const;
     Vec2 lean_of_make(const Aim& aim, const Vec3& normal) const;
     void turn_holder(const Aim& aim, const Vec3& motion);
@@ -158,6 +159,7 @@ class PointerInput {
     Aim aim_;                                   ///< the last one
     std::vector<Waiting> waiting_;              ///< of a clean stroke, until its direction is known
     DraggedPoint dragged_;                      ///< on a string of `tip_lag_turn`: where the tip lag points
+    std::optional<stroke::BladeRoll> blade_;    ///< of a clean stroke of a blade
     std::optional<stroke::FollowedTurn> turn_;  ///< of a brush whose tip lag differs by turn
     DraggedPoint leant_;                        ///< on one of `stroke::lean_string`: where the make leans
     double gone_ = 0;                           ///< metres moved since pen down

@@ -143,9 +143,8 @@ PaintWork prepare_model(Inspected in, const OpenOptions& options, const fs::path
     if (options.turned_round)
         prepare.repair.sides = in.summary.report.parts_turned > 0 ? mesh::OpenSides::file : mesh::OpenSides::turned;
     work.model = std::make_unique<stroke::Model>(stroke::prepare_model(std::move(in.soup), prepare));
-    work.document = std::make_unique<stroke::Document>(
-        *work.model,
-        stroke::DocumentOptions{.substrate = options.substrate, .tip_lags = stroke::shared_tip_lag_cache()});
+    work.document =
+        std::make_unique<stroke::Document>(*work.model, stroke::DocumentOptions{.substrate = options.substrate});
     if (!former.empty()) copy_strokes(former, options.follow, work, progress);
     work.texture = std::make_unique<Texture>(*work.document, progress);
     work.pixels = work.texture->pixels();

@@ -123,6 +123,7 @@ void FileDialog::refuse(const Message& why) {
 }
 
 void FileDialog::go(const fs::path& folder) {
+    if (folder_ != folder.lexically_normal()) sketch_ = {};  // a disk that does not answer holds up no other folder
     folder_ = folder.lexically_normal();
     read_folder();
 }

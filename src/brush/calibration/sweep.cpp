@@ -126,7 +126,7 @@ Steady drag(const Preset& preset, double depth, const Vec2& lean, double roll) {
     const Vec3 tip_to_root = preset.length * up;
     Pose pose{tip_to_root, {1, 0, 0, 0}, 0};
     if (lean != Vec2{0} || roll != 0) {
-        const Vec3 level = glm::normalize(Vec3{1, 0, 0} - up.x * up);
+        const Vec3 level = parallel_transport({1, 0, 0}, {0, 0, 1}, up);
         const Vec3 x = roll == 0 ? level : std::cos(roll) * level + std::sin(roll) * glm::cross(up, level);
         pose.rotation = glm::normalize(glm::quat_cast(Mat3(x, glm::cross(up, x), up)));
     }

@@ -44,7 +44,8 @@ struct LinePlace {
 
 /// Computes the line's position for a tilted holder: up ∝ (tan lean.x, tan lean.y, 1), radians. A holder tilted
 /// forward drags its hair; a holder tilted back pushes it ahead. `roll`: radians, of the ferrule's x from the path,
-/// anticlockwise about the holder's axis; at π/2 its broad side is across. Cost: about 4 ms; of a fan 0.25 s.
+/// anticlockwise about the holder's axis, as turned with the sheet's normal by the smallest rotation to up; at π/2 its
+/// broad side is across. Cost: about 4 ms; of a fan 0.25 s.
 LinePlace line_place(const Preset& preset, double depth, const Vec2& lean, double roll = 0);
 
 /// Returns CSV text with the columns z_mm,width_mm,drag_mm,offset_mm.

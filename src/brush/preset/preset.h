@@ -56,7 +56,8 @@ struct Preset {
     double surface_tension = 0.05;  ///< N/m, of the ink between two spines
     double hair_friction = 0.3;     ///< Coulomb μ between hair and hair
 
-    /// rad, lean of the holder ahead, across its broad side, in a hand that gives no tilt
+    /// rad, lean of the holder ahead, across its broad side, of a blade (slant > 0) along it, in a hand that gives no
+    /// tilt
     double lean = 0;
 
     // Bending.

@@ -115,7 +115,7 @@ int run(const TrajectoryWork& a) {
     check_output(a.output);
     Console console(a.common.quiet);
     const auto project = open_project(a.project, io::Access::read, console);
-    stroke::Document painting(project->model, {.record_forces = true, .tip_lags = stroke::shared_tip_lag_cache()});
+    stroke::Document painting(project->model, {.record_forces = true});
     painting.use(project->substrate);
     io::use_presets(project->file, painting);
     const std::vector<stroke::JournalEntry> entries = project->file.strokes();

@@ -15,8 +15,8 @@
 #include "core/hash.h"
 
 /// \file
-/// Results that can be computed again, stored between runs in the user's cache folder. `stroke` stores prepared models,
-/// `writer` fitted strokes.
+/// Results that can be computed again, stored between runs in the user's cache folder. `stroke` stores prepared models
+/// and measured tip lags, `writer` fitted strokes, `app` pictures of brushes.
 namespace tuft {
 
 /// Returns the folder `tuft/NAME` in $XDG_CACHE_HOME, or else in $HOME/.cache. Empty when neither variable is set.

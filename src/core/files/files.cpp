@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <fstream>
@@ -41,8 +42,9 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
     std::error_code ec;
     check_output_folder(path);
     // Writers choose their format by the extension, so it stays at the end.
-    const fs::path temporary =
-        folder / ("." + path.stem().string() + ".part" + std::to_string(::getpid()) + path.extension().string());
+    static std::atomic<unsigned> n_written{0};  // threads of one process may write the same file
+    const fs::path temporary = folder / ("." + path.stem().string() + ".part" + std::to_string(::getpid()) + "-" +
+                                         std::to_string(n_written++) + path.extension().string());
     if (fs::exists(path, ec) && !fs::is_regular_file(path, ec))
         throw Error(path.string(), "is there already and is not a regular file");
     const Unfinished unfinished(temporary);

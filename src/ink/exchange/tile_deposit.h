@@ -9,7 +9,7 @@
 namespace tuft::ink {
 
 /// Deposits stamps one after the other, each by the law of `deposit`, with its bits. What all of them give is summed
-/// once, over the change of each texel: stamps lie over each other, and the sum took half of a stamp's time.
+/// once, over the change of each texel: stamps lie over each other, and a sum for each costs as much as its deposit.
 class TileDeposit {
   public:
     /// `area` and `tone` [256] as in `deposit`; they and the canvas must outlive it.

@@ -30,7 +30,7 @@ struct DocumentOptions {
     std::string substrate = "porcelain";              ///< name of a shipped one; `Document::use` takes any other
     std::size_t undo_bytes = std::size_t{256} << 20;  ///< of retained tiles; older entries are undone by replay
     bool record_forces = false;                       ///< fills `StrokeReport::forces`
-    DiskCache tip_lags;                               ///< of measured tip lags (`shared_tip_lag_cache`)
+    DiskCache tip_lags = shared_tip_lag_cache();      ///< of measured tip lags
 };
 
 class FlatTexels;

@@ -39,8 +39,8 @@ struct FreeArea {
 /// Casts 129² parallel rays over the model's box. Gaps of one or two rays, such as shut lines, are ignored. Through the
 /// depths within two rays (of the longer side of a cell) of each ray a plane is laid by least squares, twice: it gives
 /// the smoothed depth, then the normal. So noise of a scan counts by its mean over some 25 rays, not by triangles. A
-/// ray is free where the surface lies at less than 70° to it without a step to its neighbours; at the inside also with
-/// walls around it in six of eight directions. Roughness of a ray is
+/// ray is free where that normal is within 70° of it, without a step to its neighbours; at the inside also with walls
+/// around it in six of eight directions. Roughness of a ray is
 ///
 ///     1 − |mean of the normals around| + max(0, r − 2 q)
 ///

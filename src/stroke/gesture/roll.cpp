@@ -1,5 +1,6 @@
 #include "stroke/gesture/roll.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -37,6 +38,15 @@ double follow_stroke(RollFollower& state, double hand, const Vec2& motion) {
         state.roll += left - 2 * std::atan(std::tan(0.5 * left) * std::exp(-length / kRollLag));
     }
     return state.roll += 0.5 * twist;
+}
+
+void BladeRoll::follow(double hand, double gone) {
+    constexpr double kMostLate = 0.2;  // radians
+    const double turned = turn_between(hand_, hand);
+    hand_ = hand;
+    if (!(gone > 0)) return;
+    const double steady = std::clamp(turned / gone * string_, -kMostLate, kMostLate);
+    late_ = steady + (late_ - steady) * std::exp(-gone / string_);
 }
 
 StrokeSamples roll_holder(StrokeSamples trace, const StrokeSettings& settings) {

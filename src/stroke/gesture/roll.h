@@ -42,6 +42,25 @@ struct RollFollower {
 /// on.
 double follow_stroke(RollFollower& state, double hand, const Vec2& motion);
 
+/// Roll of a blade in a hand that turns: a blade lies along the hair that it drags, so it turns as late as the point of
+/// a string of length λ, else it sweeps its line wider in one bend than in the other. With e the lag of the roll r over
+/// the path s,
+///
+///     de/ds = dr/ds − e/λ,
+///
+/// exact for rolls that are linear between samples. A turn in place is not late; none lags by more than 0.2 radians.
+class BladeRoll {
+  public:
+    /// `string`: λ, metres. `hand`: radians, roll of the hand at the first sample.
+    BladeRoll(double string, double hand) : string_(string), hand_(hand) {}
+    /// Takes the next sample, `gone` metres along the path.
+    void follow(double hand, double gone);
+    double roll() const { return hand_ - late_; }
+
+  private:
+    double string_, hand_, late_ = 0;
+};
+
 /// Returns the trace with the rolls that `roll` and `roll_follow` of the settings give to its samples. A trace in space
 /// stays as it is.
 StrokeSamples roll_holder(StrokeSamples trace, const StrokeSettings& settings);

@@ -9,6 +9,7 @@
 #include "core/ease.h"
 #include "core/system/build_facts.h"
 #include "core/system/parallel.h"
+#include "stroke/gesture/roll.h"
 #include "stroke/gesture/tractrix.h"
 #include "stroke/placement/tip_lag_code.h"
 
@@ -19,6 +20,19 @@ constexpr double kLeansNot = 0.05, kLeans = 0.15;  // radians
 constexpr double kOnGrid = 1e-9;                   // of a cell
 constexpr double kFallsOver = 0.5;  // of the tuft's length, of travel in which hair follows a turn of a wide ferrule
 constexpr double kPlumb = 0.3;      // of the tuft's length, of travel over which an upright holder comes to its lean
+
+/// Of the working depth, at which the tip lag as held is measured.
+constexpr std::array kHeldDepths{0.05, 0.15, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0};
+
+/// Whether what a cache held may be a tip lag: metres.
+template <class T>
+bool is_plausible(const T& value) {
+    const auto is_length = [](double x) { return std::abs(x) < 1; };
+    if constexpr (std::is_same_v<T, TipLag>)
+        return is_length(value.depth) && is_length(value.length);
+    else
+        return is_length(value.x) && is_length(value.y);
+}
 
 /// Where x lies between the grid's values, held to its ends.
 template <std::size_t N>
@@ -43,8 +57,8 @@ double tip_lag_length(std::span<const TipLag> table, double depth) {
 }  // namespace
 
 template <class T, class Measure>
-std::vector<T> TiltedTipLag::stored(std::string_view kind, std::span<const std::size_t> place,
-                                    const Measure& measure) const {
+std::vector<T> TiltedTipLag::read_or_measure(std::string_view kind, std::span<const std::size_t> place, std::size_t n,
+                                             const Measure& measure) const {
     CacheKey key("tip lag 1");
     key.add_text(kTipLagCode);
     const BuildFacts& facts = build_facts();
@@ -54,9 +68,14 @@ std::vector<T> TiltedTipLag::stored(std::string_view kind, std::span<const std::
     key.add_text(kind);
     key.add_array(place);
     std::vector<T> values;
-    if (cache_.read(key, [&](CacheReader& entry) { values = entry.get<T>(); }) && !values.empty()) return values;
+    const auto take = [&](CacheReader& entry) {
+        std::vector<T> found = entry.get<T>();
+        if (found.size() != n || !std::ranges::all_of(found, is_plausible<T>)) CacheReader::fail();
+        values = std::move(found);
+    };
+    if (cache_.read(key, take)) return values;
     values = measure();
-    if (cache_.write(key, [&](CacheWriter& entry) { entry.put(values); })) cache_.trim();
+    cache_.write(key, [&](CacheWriter& entry) { entry.put(values); });
     return values;
 }
 
@@ -64,7 +83,7 @@ const std::vector<Vec2>& TiltedTipLag::node(std::size_t i, std::size_t j, std::s
     const std::lock_guard lock(mutex_);
     std::vector<Vec2>& tip_lags = nodes_[(turn * kAlong.size() + i) * kAcross.size() + j];
     if (!tip_lags.empty()) return tip_lags;
-    return tip_lags = stored<Vec2>("node", std::array{i, j, turn}, [&] {
+    return tip_lags = read_or_measure<Vec2>("node", std::array{i, j, turn}, kDepths.size(), [&] {
                const double roll = glm::radians(kTurns[turn]);
                std::vector<Vec2> measured(kDepths.size());
                parallel_for(measured.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -140,8 +159,7 @@ std::vector<TipLag> TiltedTipLag::measure_as_held() {
         return held;
     }
     std::vector<double> depths;
-    for (const double part : {0.05, 0.15, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0})
-        depths.push_back(part * working_depth(preset_));
+    for (const double part : kHeldDepths) depths.push_back(part * working_depth(preset_));
     // An edge is set down with its middle on the path.
     const auto half = lags_by_turn(preset_) ? &brush::SweepRow::drag : &brush::SweepRow::width;
     for (const brush::SweepRow& row : brush::sweep_depth(preset_, depths))
@@ -150,12 +168,16 @@ std::vector<TipLag> TiltedTipLag::measure_as_held() {
 }
 
 const std::vector<TipLag>& TiltedTipLag::as_held() {
-    std::call_once(measured_, [&] { as_held_ = stored<TipLag>("as held", {}, [&] { return measure_as_held(); }); });
+    std::call_once(measured_, [&] {
+        const std::size_t n = 1 + (bends_across(preset_) ? kDepths.size() : kHeldDepths.size());
+        as_held_ = read_or_measure<TipLag>("as held", {}, n, [&] { return measure_as_held(); });
+        cache_.trim();
+    });
     return as_held_;
 }
 
 DiskCache shared_tip_lag_cache() {
-    return DiskCache(cache_folder("tip_lags"), std::uintmax_t{4} << 20);
+    return DiskCache(cache_folder("tip_lags"), std::uintmax_t{1} << 20);
 }
 
 FollowedTurn::FollowedTurn(double tuft_length, double turn) : lambda_(kFallsOver * tuft_length), turn_(turn) {}
@@ -318,24 +340,6 @@ double angle_of(const Vec2& ahead) {
     return std::atan2(-ahead.y, ahead.x);
 }
 
-// A blade lies along the hair that it drags: it turns as late as the string does, else it sweeps its line wider in one
-// bend than in the other. Lag e of the roll r over the path s, exact for rolls that are linear between samples:
-// de/ds = dr/ds - e / string. A turn in place is not late.
-void turn_with_string(std::span<StrokeSample> samples, double string) {
-    constexpr double kMostLate = 0.2;  // radians
-    double late = 0, hand = samples.front().roll;
-    for (std::size_t i = 1; i < samples.size(); ++i) {
-        const double gone = glm::distance(samples[i].position, samples[i - 1].position);
-        const double turned = std::remainder(samples[i].roll - hand, 2 * std::numbers::pi);
-        hand = samples[i].roll;
-        if (gone > 0) {
-            const double steady = std::clamp(turned / gone * string, -kMostLate, kMostLate);
-            late = steady + (late - steady) * std::exp(-gone / string);
-        }
-        samples[i].roll -= late;
-    }
-}
-
 /// Direction in which a hand sets out; where its trace does not leave the first place, hair that bends across its broad
 /// side is set down towards the side that the holder leans to, or y.
 Vec2 sets_out(std::span<const StrokeSample> samples, const HolderOptions& options) {
@@ -373,14 +377,19 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     // slide on ahead of the hand and fall to its side.
     const bool leans = options.lean > kLean && glm::dot(trace.samples.front().tilt, ahead) > kLean;
     if ((pressed || options.blade_landing > 0) && ahead != Vec2(0) && !leans) lean_ahead(trace, options, ahead);
-    if (options.blade_landing > 0) turn_with_string(trace.samples, options.tip_lag_turn);
     Vec2 dragged = first - options.tip_lag_turn * ahead, before = first;
     FollowedTurn turn(options.tuft_length, trace.samples.front().roll - angle_of(ahead));
+    BladeRoll blade(options.tip_lag_turn, trace.samples.front().roll);
     for (StrokeSample& s : trace.samples) {
         const Vec2 p(s.position);
         dragged = drag_string(dragged, before, p, options.tip_lag_turn);
         const Vec2 towards = (p - dragged) / options.tip_lag_turn;
-        const double turned = turn.follow(s.roll - angle_of(towards), glm::distance(p, before));
+        const double gone = glm::distance(p, before);
+        if (options.blade_landing > 0) {
+            blade.follow(s.roll, gone);
+            s.roll = blade.roll();
+        }
+        const double turned = turn.follow(s.roll - angle_of(towards), gone);
         const double roll = options.turned ? turned + angle_of(towards) : s.roll;
         before = p;
         s.position = Vec3(p + tip_lag_at(options, s.pressure, s.tilt, roll, towards), s.position.z);

@@ -53,7 +53,8 @@ class TiltedTipLag {
     static constexpr std::size_t kEdge = 0, kBroad = kTurns.size() - 1, kUpright = 3;  // of `kTurns`; of `kAlong`
 
     template <class T, class Measure>
-    std::vector<T> stored(std::string_view kind, std::span<const std::size_t> place, const Measure& measure) const;
+    std::vector<T> read_or_measure(std::string_view kind, std::span<const std::size_t> place, std::size_t n,
+                                   const Measure& measure) const;
     std::vector<TipLag> measure_as_held();
     const std::vector<Vec2>& node(std::size_t i, std::size_t j, std::size_t turn);
     Vec2 of_node(std::size_t i, std::size_t j, std::size_t turn, double depth);
@@ -69,7 +70,7 @@ class TiltedTipLag {
     std::vector<TipLag> as_held_;
 };
 
-/// Returns the cache of the user's measured tip lags: `tuft/tip_lags` in $XDG_CACHE_HOME or ~/.cache, 4 MiB.
+/// Returns the cache of the user's measured tip lags: `tuft/tip_lags` in $XDG_CACHE_HOME or ~/.cache, 1 MiB.
 DiskCache shared_tip_lag_cache();
 
 /// Returns the tip lag at one point of a path, metres to the right and down. `tilt` and `roll`: radians, as in
@@ -120,7 +121,8 @@ inline constexpr double kHoverTime = 0.05;  ///< seconds of the tip between the 
 /// one, at the same place and earlier in time, whose pressure rises to the first; the holder moves at `kSetDownPace`
 /// times the trace's speed, so that the tip touches first and trails. It leans ahead by 0.12 rad meanwhile where a make
 /// that leans does not already tilt it ahead by more, and so does that of a blade at any landing, over `blade_landing`.
-/// A holder upright to 0.05 rad sets the brush down plumb and reaches its lean within 0.3 lengths of the tuft.
+/// A blade turns as late as the string (`BladeRoll`). A holder upright to 0.05 rad sets the brush down plumb and
+/// reaches its lean within 0.3 lengths of the tuft.
 ///
 /// The hand's speed bounds the holder's. Over a surface of curvature κ, while the tuft is pressed,
 ///

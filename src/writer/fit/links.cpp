@@ -57,7 +57,7 @@ Vec2 into(const std::vector<Station>& s) {
 }
 
 /// A stroke without the part of its head that lies across its way: a tuft that comes along a link is not set down anew.
-std::vector<Station> entered(const std::vector<Station>& s) {
+std::vector<Station> trim_head(const std::vector<Station>& s) {
     double along = 0;
     std::size_t ahead = 0;
     while (ahead + 1 < s.size() && along < kAhead)
@@ -101,13 +101,16 @@ bool is_in_ink(const Vec2& p, const std::vector<Station>& s, double but_head, do
     });
 }
 
-/// Whether a hand goes from stroke `next` − 1 to `next` on the ground: nearby, without turning round, and not over ink.
+/// Whether a hand goes from stroke `next` − 1 to `next` with the brush down: nearby, without turning round, and not
+/// over ink.
 bool is_drawn(const std::vector<Station>& link, const std::vector<std::vector<Station>>& strokes, std::size_t next,
               const std::vector<Station>& entry, const Style& style) {
     const std::vector<Station>& before = strokes[next - 1];
     const Vec2 chord = entry.front().centre - before.back().centre;
-    const double turn = angle_between(out_of(before), chord) + angle_between(chord, into(entry));
-    const double gap = glm::length(chord), tight = turn > kFlowing ? kTightest * turn : 0;
+    const double gap = glm::length(chord);
+    const double turn = gap > 1e-9 ? angle_between(out_of(before), chord) + angle_between(chord, into(entry))
+                                   : angle_between(out_of(before), into(entry));
+    const double tight = turn > kFlowing ? kTightest * turn : 0;
     if (gap < tight || gap > style.link * (1 - kTurnedBack * turn / (2 * std::numbers::pi))) return false;
     const auto crossing = std::count_if(link.begin(), link.end(), [&](const Station& station) {
         for (std::size_t k = 0; k < strokes.size(); ++k)
@@ -129,7 +132,7 @@ std::vector<std::vector<Station>> linked(std::vector<std::vector<Station>> strok
     std::vector<std::vector<Station>> out;
     for (std::size_t k = 0; k < strokes.size(); ++k) {
         if (k > 0) {
-            std::vector<Station> entry = entered(strokes[k]);
+            std::vector<Station> entry = trim_head(strokes[k]);
             const std::vector<Station> link = link_between(strokes[k - 1], entry, style);
             if (is_drawn(link, strokes, k, entry, style)) {
                 std::vector<Station>& line = out.back();

@@ -14,7 +14,8 @@ Vec2 leaned(const Vec2& p, const Glyph& glyph, double slant) {
 }
 
 bool is_han(char32_t code) {
-    static constexpr char32_t kRanges[][2] = {{0x2E80, 0x2FDF}, {0x3400, 0x9FFF}, {0xF900, 0xFAFF}, {0x20000, 0x3FFFF}};
+    static constexpr char32_t kRanges[][2] = {{0x2E80, 0x2FDF}, {0x3005, 0x3005}, {0x3021, 0x3029}, {0x3038, 0x303B},
+                                              {0x3400, 0x4DBF}, {0x4E00, 0x9FFF}, {0xF900, 0xFAFF}, {0x20000, 0x3FFFF}};
     return std::any_of(std::begin(kRanges), std::end(kRanges),
                        [code](const char32_t(&range)[2]) { return code >= range[0] && code <= range[1]; });
 }
