@@ -32,7 +32,11 @@ Arm arm_of(const Solver& s, int j) {
 constexpr int kMaxMoves = 3 * kMaxCoupled, kMaxSteps = 2 * kMaxCoupled;
 /// Columns of a segment's rows: the moves x of the nodes (3 a rod), the steps v of the segments inboard (2 a rod) and
 /// the right-hand side; rounded up to whole vectors.
-constexpr int kMaxColumns = (kMaxMoves + kMaxSteps + 1 + 7) / 8 * 8;
+constexpr int kLanes = 8;
+constexpr int whole_lanes(int columns) {
+    return (columns + kLanes - 1) / kLanes * kLanes;
+}
+constexpr int kMaxColumns = whole_lanes(kMaxMoves + kMaxSteps + 1);
 
 /// Rows of segment j of all rods as it was eliminated: with U = Rᵀ R, Z = R⁻ᵀ [X | in | g].
 struct Gain {
@@ -59,7 +63,7 @@ TUFT_CLONES bool factorise(double (&a)[kMaxSteps][kMaxSteps], double (&inverse)[
     return true;
 }
 
-/// z ← R⁻ᵀ z.
+/// z ← R⁻ᵀ z; `columns` a multiple of kLanes.
 TUFT_CLONES void forward(const double (&upper)[kMaxSteps][kMaxSteps], const double (&inverse)[kMaxSteps], int n,
                          int columns, double (&z)[kMaxSteps][kMaxColumns]) {
     for (int i = 0; i < n; ++i) {
@@ -68,22 +72,27 @@ TUFT_CLONES void forward(const double (&upper)[kMaxSteps][kMaxSteps], const doub
         for (int j = i + 1; j < n; ++j) {
             const double f = upper[i][j];
             double* __restrict other = z[j];
-            for (int c = 0; c < columns; ++c) other[c] -= f * row[c];
+            for (int c = 0; c < columns; c += kLanes)
+                for (int lane = 0; lane < kLanes; ++lane) other[c + lane] -= f * row[c + lane];
         }
     }
 }
 
-/// gram ← Zᵀ Z, rows [0, rows), of each the columns from its diagonal on.
+/// gram ← Zᵀ Z, rows [0, rows), of each the columns from its diagonal on; `columns` a multiple of kLanes. Two rows and
+/// eight columns at a time, whose sums stay in registers. Each sum runs along the rows of z.
 TUFT_CLONES void square(const double (&z)[kMaxSteps][kMaxColumns], int n, int rows, int columns,
                         double (&gram)[kMaxColumns][kMaxColumns]) {
-    for (int r = 0; r < rows; ++r) {
-        double* __restrict out = gram[r];
-        const int from = r / 4 * 4;
-        for (int c = from; c < columns; ++c) out[c] = 0;
-        for (int i = 0; i < n; ++i) {
-            const double f = z[i][r];
-            const double* __restrict row = z[i];
-            for (int c = from; c < columns; ++c) out[c] += f * row[c];
+    for (int r = 0; r < rows; r += 2) {  // the second of the last pair may be the right-hand side's, of no use
+        for (int c = r / kLanes * kLanes; c < columns; c += kLanes) {
+            double first[kLanes] = {}, second[kLanes] = {};
+            for (int i = 0; i < n; ++i) {
+                const double* __restrict here = z[i] + c;
+                const double f = z[i][r], g = z[i][r + 1];
+                for (int lane = 0; lane < kLanes; ++lane) first[lane] += f * here[lane];
+                for (int lane = 0; lane < kLanes; ++lane) second[lane] += g * here[lane];
+            }
+            for (int lane = 0; lane < kLanes; ++lane) gram[r][c + lane] = first[lane];
+            for (int lane = 0; lane < kLanes; ++lane) gram[r + 1][c + lane] = second[lane];
         }
     }
 }
@@ -220,6 +229,8 @@ class BlockElimination {
         }
     }
 
+    int columns() const { return whole_lanes(moves_ + steps_ + 1); }
+
     double damping_of(const Solver& s, int j) const {
         return damping_ * (s.rod.stiffness[j] + (j + 1 < s.n() ? s.rod.stiffness[j + 1] : 0));
     }
@@ -234,6 +245,7 @@ class BlockElimination {
             std::copy(out.q[i], out.q[i] + moves_, gain.z[i]);
             std::fill(gain.z[i] + moves_, gain.z[i] + moves_ + steps_, 0.0);
             gain.z[i][moves_ + steps_] = out.r1[i];
+            std::fill(gain.z[i] + moves_ + steps_ + 1, gain.z[i] + columns(), 0.0);
         }
         double pa[kMaxSteps][kMaxMoves], qa[kMaxSteps][kMaxSteps]{};
         for (int k = 0; k < k_; ++k) {
@@ -277,7 +289,7 @@ class BlockElimination {
         }
         if (!factorise(gain.upper, gain.inverse, steps_)) return false;
         if (j > 0) couple_inboard(j, gain);
-        forward(gain.upper, gain.inverse, steps_, moves_ + steps_ + 1, gain.z);
+        forward(gain.upper, gain.inverse, steps_, columns(), gain.z);
         if (j > 0) reduce_inboard(j, gain);
         return true;
     }
@@ -302,8 +314,8 @@ class BlockElimination {
     /// The model over the moves of the nodes inboard of segment j and over the steps of the segments there.
     void reduce_inboard(int j, const Gain& gain) {
         Outboard& out = scratch_.out;
-        const int columns = moves_ + steps_ + 1;
-        square(gain.z, steps_, moves_ + steps_, columns, scratch_.gram);
+        const int last = moves_ + steps_;
+        square(gain.z, steps_, last, columns(), scratch_.gram);
         const auto& gram = scratch_.gram;
         for (int i = 0; i < moves_; ++i) {
             for (int c = i; c < moves_; ++c) {
@@ -311,11 +323,11 @@ class BlockElimination {
                 out.p[c][i] = out.p[i][c];
             }
             for (int c = 0; c < steps_; ++c) out.q[c][i] = -gram[i][moves_ + c];
-            out.p1[i] -= gram[i][columns - 1];
+            out.p1[i] -= gram[i][last];
         }
         for (int i = 0; i < steps_; ++i) {
             for (int c = i; c < steps_; ++c) out.r[i][c] = out.r[c][i] = -gram[moves_ + i][moves_ + c];
-            out.r1[i] = -gram[moves_ + i][columns - 1];
+            out.r1[i] = -gram[moves_ + i][last];
         }
         for (int k = 0; k < k_; ++k) {
             const Solver& s = solvers_[k];
