@@ -87,14 +87,18 @@ void add_strip_shadow(const Cut& cut, std::span<const Vec2> strip, Recycled<Vec2
     };
     const std::size_t before = corners.size();
     const int pieces = cut.is_bent() ? kBentPieces : 1;
+    Vec2 u = strip[0];
+    double p = height(u);
     for (std::size_t k = 0; k < strip.size(); ++k) {
         const Vec2 &c = strip[k], &next = strip[(k + 1) % strip.size()];
         const int n = std::abs(next.x - c.x) > 0.5 * Trail::kStripChord ? pieces : 1;
-        for (int i = 0; i < n; ++i) {
-            const Vec2 u = glm::mix(c, next, double(i) / n), v = glm::mix(c, next, double(i + 1) / n);
-            const double p = height(u), q = height(v);
+        for (int i = 1; i <= n; ++i) {
+            const Vec2 v = i < n ? glm::mix(c, next, double(i) / n) : next;
+            const double q = height(v);
             if (p <= 0) corners.push_back(point(u));
             if ((p <= 0) != (q <= 0)) corners.push_back(glm::mix(point(u), point(v), p / (p - q)));
+            u = v;
+            p = q;
         }
     }
     if (corners.size() == before) corners.push_back(cut.centre);  // it only just touches
