@@ -275,6 +275,12 @@ TEST_F(WritingOnModel, OneThatNoTuftCanPaintIsRefusedBeforeItsFirstStroke) {
 // A canvas has planes for a few pigments. Inks that were asked for hold theirs: those of the first drawing would leave
 // too few for the second one's.
 TEST_F(WritingOnModel, OneInColoursThatIsRefusedLeavesNoneOfItsInks) {
+    const auto placed = [](const std::string& file, double scale, const WritingHand& hand) {
+        Writing w = read_writing(file);
+        w.own_ink = scale == 1;
+        w.scale = scale;
+        return PaintDrawing{placed_writing(w, stroke::placement_seen({0, 0, 0.05}, {0, 0, 1}, {1, 0, 0}, 0), hand), {}};
+    };
     const auto stripes = [&](const std::vector<std::string>& colours) {
         const std::string file = folder_ + "/stripes.svg";
         std::ofstream out(file);
@@ -283,26 +289,31 @@ TEST_F(WritingOnModel, OneInColoursThatIsRefusedLeavesNoneOfItsInks) {
             out << "<rect width='4' height='10' x='" << 4 * i << "' fill='" << colours[i] << "'/>";
         out << "</svg>";
         out.close();
-        Writing w = read_writing(file);
-        w.own_ink = true;
-        return PaintDrawing{placed_writing(w, stroke::placement_seen({}, {0, 0, 1}, {1, 0, 0}, 0), kHand), {}};
+        return placed(file, 1, kHand);
     };
+    const std::vector<std::string> many{"#0a3d2a", "#e0b030", "#1b3f9a", "#f0f0e8"};
     stroke::LayerEdit lock{.what = stroke::LayerChange::change, .layer = {.id = stroke::kFirstLayer}};
     std::vector<Command> before;
     lock.layer.locked = true;
     before.push_back(ChangeLayers{lock});
-    before.push_back(stripes({"#0a3d2a", "#e0b030", "#1b3f9a", "#f0f0e8"}));
+    before.push_back(stripes(many));
     lock.layer.locked = false;
     before.push_back(ChangeLayers{lock});
+    // A line 1.4 m long by a tuft that is longer than the sphere: refused when the inks of areas and lines are mixed.
+    const std::string line = folder_ + "/line.inkml";
+    std::ofstream(line) << "<ink xmlns='http://www.w3.org/2003/InkML'><trace>0 0, 7 0, 14 0</trace></ink>";
+    PaintDrawing large = placed(line, 100, {"wolf-large*4", "#7a1f90"});
+    for (stroke::JournalEntry& entry : stripes(many).drawing.entries) large.drawing.entries.push_back(std::move(entry));
+    before.push_back(std::move(large));
     const std::string colour = "#c02070";
     const auto paint = [&](const mesh::SurfaceQuery&) {
         return std::pair<Command, std::string>(stripes({colour}), "");
     };
-    const Painted all = BothPrograms::by_studio("sheet.ply", paint, std::move(before));
+    const Painted all = BothPrograms::by_studio("sphere.ply", paint, std::move(before));
     ASSERT_EQ(all.journal.size(), 3u) << "two changes of the layer and one stripe";
     const io::Project project = io::Project::open(folder_ + "/studio.tuft");
     EXPECT_EQ(project.inks().size(), 1u);
-    const stroke::Model model = test::shipped_model("sheet.ply", 64);
+    const stroke::Model model = test::shipped_model("sphere.ply", 64);
     stroke::Document fresh(model), stored(model);
     io::use_presets(project, stored);
     fresh.mix_together({{colour, 1}});

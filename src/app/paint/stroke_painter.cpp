@@ -134,25 +134,41 @@ void StrokePainter::direct(std::vector<stroke::JournalEntry>& entries, const Gro
     }
 }
 
+namespace {
+
+/// Inks of entries that are named by colours (`#rrggbb`).
+std::vector<std::string> colours_of(const std::vector<stroke::JournalEntry>& entries) {
+    std::vector<std::string> colours;
+    for (const stroke::JournalEntry& entry : entries)
+        for (std::string& ink : stroke::inks_of(entry))
+            if (ink.starts_with('#')) colours.push_back(std::move(ink));
+    return colours;
+}
+
+}  // namespace
+
 void StrokePainter::paint_drawing(PaintDrawing& command) {
     cancel();
     const ProgressFn shown = context_.progress("Placing the drawing");
     shown("", 0);
     direct(command.drawing.entries, command.group);  // a locked layer refuses it before any ink is mixed
-    std::vector<stroke::JournalEntry> entries = entries_of(command);
-    direct(entries, command.group);
     stroke::Document& document = *context_.work.document;
     const std::uint64_t before = document.journal().next_id();
-    std::vector<std::string> mixed = stroke::mix_drawing_inks(entries, document);
-    // Of a drawing that is refused nothing stays, or the next one would be mixed from its pigments.
+    // Of a drawing that is refused no ink stays, or the next one would be mixed from its pigments. Brushes are chosen
+    // by the film of inks, so that those of lines are mixed from there on.
+    const std::vector<std::string> colours = colours_of(command.drawing.entries);
     const auto forget_unused = [&] {
         if (document.journal().next_id() != before) return;
-        std::erase_if(mixed, [&](const std::string& name) {  // which the project file has
-            return std::ranges::find(context_.own_inks, name, &ink::Ink::name) != context_.own_inks.end();
-        });
-        document.forget_inks(mixed);
+        std::vector<std::string> unused;
+        for (const std::string& colour : colours)  // the project file has the others
+            if (std::ranges::find(context_.own_inks, colour, &ink::Ink::name) == context_.own_inks.end())
+                unused.push_back(colour);
+        document.forget_inks(unused);
     };
     try {
+        std::vector<stroke::JournalEntry> entries = entries_of(command);
+        direct(entries, command.group);
+        stroke::mix_drawing_inks(entries, document);
         paint_group(std::move(entries), command.group, shown);
     } catch (...) {
         forget_unused();

@@ -7,7 +7,6 @@
 #include <set>
 #include <utility>
 
-#include "core/error.h"
 #include "ink/composite/match.h"
 #include "ink/spectra/colorimetry.h"
 #include "ink/spectra/srgb.h"
@@ -79,17 +78,12 @@ double enclosed_area(const FlatArea& area) {
     return sum;
 }
 
-std::vector<std::string> mix_drawing_inks(std::vector<JournalEntry>& drawing, Document& painting) {
+void mix_drawing_inks(std::vector<JournalEntry>& drawing, Document& painting) {
     const std::vector<FlatArea*> areas = areas_in(drawing, true);
-    std::vector<std::string> mixed = painting.mix_together(weights_of(areas));
+    painting.mix_together(weights_of(areas));
     const Materials& materials = painting.materials();
-    try {
-        for (const JournalEntry& entry : drawing)
-            for (const std::string& ink : inks_of(entry)) materials.ink(ink);
-    } catch (const Error&) {
-        painting.forget_inks(mixed);
-        throw;
-    }
+    for (const JournalEntry& entry : drawing)
+        for (const std::string& ink : inks_of(entry)) materials.ink(ink);
     std::map<std::pair<std::string, double>, double> known;
     for (FlatArea* area : areas)
         for (AreaStop& stop : area->stops) {
@@ -98,7 +92,6 @@ std::vector<std::string> mix_drawing_inks(std::vector<JournalEntry>& drawing, Do
             if (fresh) at->second = film_for(materials.ink(stop.ink), stop.opacity, materials.substrate());
             stop.film = at->second;
         }
-    return mixed;
 }
 
 std::vector<ReachedInk> reached_inks(const std::vector<JournalEntry>& drawing, const Document& painting) {

@@ -23,9 +23,8 @@ double enclosed_area(const FlatArea& area);
 /// Then sets the film of every translucent stop: the thickness that brings the ink nearest (ΔE2000) to its opacity
 /// times its colour over the bare substrate, mixed in sRGB as the drawing's maker saw it.
 ///
-/// Returns the names of the inks that it mixed, for `Document::forget_inks` where nothing of the drawing is painted.
-/// Throws `Error` for an unknown ink; then it has mixed none.
-std::vector<std::string> mix_drawing_inks(std::vector<JournalEntry>& drawing, Document& painting);
+/// Throws `Error` for an unknown ink.
+void mix_drawing_inks(std::vector<JournalEntry>& drawing, Document& painting);
 
 /// What an ink that is named by a colour looks like.
 struct ReachedInk {
