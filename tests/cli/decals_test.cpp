@@ -217,7 +217,23 @@ TEST_F(Trajectories, OfFilledAreasNameTheOptionThatPaintsThemByStrokes) {
     EXPECT_EQ(none.status, 1);
     EXPECT_NE(none.err.find("--areas brush"), std::string::npos) << none.err;
     ASSERT_EQ(tuft(paint + path("strokes.tuft") + " --areas brush").status, 0);
-    EXPECT_EQ(tuft("trajectory " + path("strokes.tuft") + " --quiet -o " + path("a.csv")).status, 0);
+    const test::Ran lines = tuft("trajectory " + path("strokes.tuft") + " -o " + path("a.csv"));
+    EXPECT_EQ(lines.status, 0);
+    EXPECT_EQ(lines.err.find("stencils"), std::string::npos) << "a line has none: " << lines.err;
+}
+
+// A robot has no stencil: ink of a filled shape goes over its edge.
+TEST_F(Trajectories, OfStrokesWithinStencilsSayThatTheirEdgesAreLost) {
+    write(
+        "f.svg",
+        "<svg xmlns='http://www.w3.org/2000/svg' width='20mm' viewBox='0 0 20 20'><path d='M8 8L12 8L10 11Z'/></svg>");
+    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("f.svg") +
+                   " --place 0,0,0 --atlas-size 128 --quiet --areas brush --project " + path("filled.tuft"))
+                  .status,
+              0);
+    const test::Ran filled = tuft("trajectory " + path("filled.tuft") + " -o " + path("a.csv"));
+    EXPECT_EQ(filled.status, 0);
+    EXPECT_NE(filled.err.find("within stencils, which a trajectory does not hold"), std::string::npos) << filled.err;
 }
 
 }  // namespace

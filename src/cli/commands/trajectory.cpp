@@ -58,6 +58,7 @@ std::vector<brush::Pose> poses_of(const stroke::PaintStroke& s, const stroke::Do
 struct Painted {
     std::vector<motion::StrokePath> paths;
     std::vector<stroke::RecordedStroke> strokes;
+    std::size_t within_stencils = 0;
     std::size_t left_out = 0;  ///< entries that no robot performs: fills, layers, masks, the palette
 };
 
@@ -86,6 +87,7 @@ Painted paint_strokes(const std::vector<stroke::JournalEntry>& entries, stroke::
         own.before = std::exchange(before, {});
         own.samples.clear();
         if (own.settings) own.settings->smooth = own.settings->stabilise = 0;  // the poses are steadied
+        painted.within_stencils += !s->trace.stencil.empty();
         const brush::Preset& preset = painting.materials().brush(s->brush);
         motion::StrokePath path{.id = entry.id,
                                 .label = entry.label,
@@ -133,6 +135,11 @@ int run(const TrajectoryWork& a) {
     if (painted.left_out > 0)
         console.note(fmt::format("warning: {} that no robot performs are left out (fills, layers, masks, the palette)",
                                  counted(painted.left_out, "change")));
+    if (painted.within_stencils > 0)
+        console.note(
+            fmt::format("warning: {} of {} are painted within stencils, which a trajectory does not hold: without "
+                        "masking tape their ink goes over the edges of filled shapes",
+                        painted.within_stencils, counted(painted.strokes.size(), "stroke")));
     io::MotionProgram program;
     program.limits = {a.max_speed_mm / 1000, a.max_acceleration_mm / 1000, kDegree * a.max_turn_deg};
     program.trajectory = motion::plan(*project->model.query, painted.paths,
