@@ -109,6 +109,13 @@ Recycled<double> node_radii(const brush::Tuft& tuft) {
     return out;
 }
 
+/// Nodes of each spine.
+Recycled<std::size_t> spine_lengths(const brush::Tuft& tuft) {
+    Recycled<std::size_t> out;
+    for (const brush::Spine& spine : tuft.spines) out.push_back(spine.rest_radius.size());
+    return out;
+}
+
 /// Walls that the side nodes of the spines meet: a ray from the spine to a little beyond each, where
 /// the spine is near a surface. Empty where there is none.
 Recycled<ContactPlane> find_side_walls(const Step& w, const brush::Tuft& tuft, std::span<const NodeContact> contacts) {
@@ -194,6 +201,7 @@ std::optional<Bent> step_at_rest(const Step& w, brush::Tuft& tuft, double dt, co
 /// Solves, looks where the nodes came to rest, and solves again where their planes were off.
 Bent solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memory) {
     const Recycled<double> radii = node_radii(tuft);
+    const Recycled<std::size_t> lengths = spine_lengths(tuft);
     const double root_radius = radii[tuft.trunk().rest_radius.size() - 1];
     const bool was_split = tuft.split;
     const Recycled<Vec3>& nodes = w.nodes;
@@ -206,7 +214,7 @@ Bent solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memory) {
     auto& [state, planes, now, contacts] = out;
     Recycled<NodeContact> predicted = find_tuft_contacts(w, tuft, nodes, {.contacts = memory.contacts});
     const Recycled<ContactPlane> beside = find_side_walls(w, tuft, predicted);
-    Recycled<NodeWalls> walls = find_chain_walls(w.surface, nodes, predicted, radii, memory.walls, w.search);
+    Recycled<NodeWalls> walls = find_chain_walls(w.surface, {lengths, nodes, predicted, radii, memory.walls}, w.search);
     StepPlanes met(walls, radii.size(), beside);
     rest.nodes.clear();
     rest.searches = still ? rest.searches + 1 : 1;
@@ -242,7 +250,7 @@ Bent solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memory) {
         }
         Recycled<NodeWalls> walls_before = walls;
         for (const std::size_t i : near) {  // from the root, which the walls of the next ones agree with
-            const NodeWalls* inboard = i + 1 < radii.size() ? &walls[i + 1] : nullptr;
+            const NodeWalls* inboard = is_root(lengths, i) ? nullptr : &walls[i + 1];
             const NodeWalls& old = walls_before[i];
             walls[i] = i < radii.size() ? update_walls(old, found[i], compared[i], radii[i], inboard)
                                         : NodeWalls{found[i], {}};

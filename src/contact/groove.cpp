@@ -94,20 +94,32 @@ void choose_own_walls(std::span<NodeWalls> walls, std::span<const Vec3> nodes, s
 
 }  // namespace
 
-Recycled<NodeWalls> find_chain_walls(const mesh::SurfaceQuery& surface, std::span<const Vec3> nodes,
-                                     std::span<const NodeContact> nearest, std::span<const double> radii,
-                                     std::span<const NodeWalls> known, const NodeContactOptions& options) {
-    Recycled<NodeWalls> out(nearest.size());
-    for (std::size_t i = 0; i < nearest.size(); ++i) out[i].own = nearest[i];
-    if (known.size() != radii.size() || nearest.size() < radii.size()) return out;
-    for (std::size_t i = radii.size(); i-- > 0;) {
-        const NodeWalls* from = &known[i];
-        if (!from->in_groove() && i + 1 < radii.size()) from = &out[i + 1];
-        if (!from->in_groove() && i > 0) from = &known[i - 1];
-        out[i] = find_walls(surface, nodes[i], nearest[i], radii[i], *from, options);
+Recycled<NodeWalls> find_chain_walls(const mesh::SurfaceQuery& surface, const NodeChains& chains,
+                                     const NodeContactOptions& options) {
+    Recycled<NodeWalls> out(chains.nearest.size());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i].own = chains.nearest[i];
+    if (chains.known.size() != chains.radii.size() || out.size() < chains.radii.size()) return out;
+    std::size_t first = 0;
+    for (const std::size_t length : chains.lengths) {
+        const std::size_t end = first + length;
+        for (std::size_t i = end; i-- > first;) {
+            const NodeWalls* from = &chains.known[i];
+            if (!from->in_groove() && i + 1 < end) from = &out[i + 1];
+            if (!from->in_groove() && i > first) from = &chains.known[i - 1];
+            out[i] = find_walls(surface, chains.nodes[i], chains.nearest[i], chains.radii[i], *from, options);
+        }
+        choose_own_walls(std::span(out).subspan(first, length), chains.nodes.subspan(first, length),
+                         chains.radii.subspan(first, length));
+        first = end;
     }
-    choose_own_walls(std::span(out).first(radii.size()), nodes, radii);
     return out;
+}
+
+bool is_root(std::span<const std::size_t> lengths, std::size_t node) {
+    std::size_t end = 0;
+    for (const std::size_t length : lengths)
+        if (end += length; node < end) return node + 1 == end;
+    return true;
 }
 
 NodeWalls update_walls(const NodeWalls& before, const NodeContact& nearest, const Vec3& node, double radius,

@@ -28,11 +28,22 @@ bool face_each_other(const NodeContact& a, const NodeContact& b);
 NodeWalls find_walls(const mesh::SurfaceQuery& surface, const Vec3& node, const NodeContact& nearest, double radius,
                      const NodeWalls& known, const NodeContactOptions& options);
 
-/// Returns the walls of chains of nodes (tip first), of which `nearest` are the nearest surfaces. Only the first nodes,
-/// as many as `radii`, metres, lie in grooves. `known`: theirs a little before, or none; then no groove is found.
-Recycled<NodeWalls> find_chain_walls(const mesh::SurfaceQuery& surface, std::span<const Vec3> nodes,
-                                     std::span<const NodeContact> nearest, std::span<const double> radii,
-                                     std::span<const NodeWalls> known, const NodeContactOptions& options);
+/// Nodes of chains, such as spines, one chain after the other, each tip first.
+struct NodeChains {
+    std::span<const std::size_t> lengths;  ///< [chains] nodes of each
+    std::span<const Vec3> nodes;           ///< metres; those after the chains lie in no groove
+    std::span<const NodeContact> nearest;  ///< [nodes] the nearest surfaces
+    std::span<const double> radii;         ///< [nodes of the chains] metres
+    std::span<const NodeWalls> known;  ///< [nodes of the chains] their walls a little before; none: no groove is found
+};
+
+/// Returns the walls of all nodes. A node without known walls looks between those of its neighbours in its chain, and
+/// neighbours in one groove have the same own wall. [nodes]
+Recycled<NodeWalls> find_chain_walls(const mesh::SurfaceQuery& surface, const NodeChains& chains,
+                                     const NodeContactOptions& options);
+
+/// Returns whether a node is the last one of its chain, its root, or of none. `lengths`: of `NodeChains`.
+bool is_root(std::span<const std::size_t> lengths, std::size_t node);
 
 /// Returns the walls of a node that was bent on those of `before` and came to rest at `node`, where `nearest` is the
 /// nearest surface. `inboard`: of the neighbour towards the root, or null.

@@ -61,6 +61,39 @@ TEST(Groove, TheOtherWallIsFoundFromWhatTheNodeLayBetween) {
     EXPECT_FALSE(find_walls(surface, out, contact_at(surface, out), kRadius, known, {}).in_groove());
 }
 
+/// Of two spines in one groove, one on each wall: as one chain neither would be called nearer.
+TEST(Groove, EachSpineLiesOnItsOwnWall) {
+    const mesh::TriangleMesh m = groove();
+    const mesh::SurfaceQuery surface(m);
+    const NodeContact left = contact_at(surface, {-2e-4, 0, -1e-3}), right = contact_at(surface, {2e-4, 0, -1e-3});
+    const NodeWalls between{left, right}, none{left, {}};
+    const std::vector<Vec3> nodes{{-4e-4, 0, -1e-3}, {-4e-4, 2e-3, -1e-3}, {4e-4, 0, -1e-3}, {4e-4, 2e-3, -1e-3}};
+    const std::vector<double> radii(nodes.size(), 1e-4);
+    std::vector<NodeContact> nearest;
+    for (const Vec3& p : nodes) nearest.push_back(contact_at(surface, p));
+    const auto walls_of = [&](const std::vector<std::size_t>& lengths, const std::vector<NodeWalls>& known) {
+        return find_chain_walls(surface, {lengths, nodes, nearest, radii, known}, {});
+    };
+    const auto is_on = [](const NodeWalls& walls, const NodeContact& wall) {
+        return walls.in_groove() && glm::dot(walls.own.plane.normal, wall.plane.normal) > 0.99;
+    };
+    const std::vector<NodeWalls> all(nodes.size(), between);
+    const Recycled<NodeWalls> two = walls_of({2, 2}, all), one = walls_of({4}, all);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        EXPECT_TRUE(is_on(two[i], i < 2 ? left : right)) << i;
+        EXPECT_TRUE(is_on(one[i], left)) << i << ": the known one";
+    }
+    // The tip of one spine knows nothing of the root of the other.
+    const Recycled<NodeWalls> first = walls_of({2, 2}, {between, between, none, none});
+    EXPECT_TRUE(first[1].in_groove());
+    EXPECT_FALSE(first[2].in_groove());
+    const Recycled<NodeWalls> second = walls_of({2, 2}, {none, none, between, between});
+    EXPECT_FALSE(second[1].in_groove());
+    EXPECT_TRUE(second[2].in_groove());
+    const std::vector<std::size_t> lengths{2, 2};
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(is_root(lengths, i), i != 0 && i != 2) << i;
+}
+
 TEST(Groove, HairThatRocksInAGrooveStaysBeforeBothWallsAndPressesSteadily) {
     const mesh::TriangleMesh m = groove();
     const mesh::SurfaceQuery surface(m);
