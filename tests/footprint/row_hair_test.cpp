@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "footprint/outline/cuts.h"
+#include "footprint/outline/slip.h"
 
 // Hair of a row whose spines differ in length.
 
@@ -42,6 +46,28 @@ TEST(RowHair, EndsOfStripsOfOtherLengthsAreOneSmoothCurve) {
     EXPECT_NEAR(place(2, 0).x, 0.25 * (0.5 * (ends[1] + ends[2]) + 2 * ends[2] + 0.5 * (ends[2] + ends[3])), 1e-15);
     // Outer hair goes on straight.
     EXPECT_NEAR(place(0, -1).x - place(0, 0).x, place(0, 0).x - place(0, 1).x, 1e-15);
+}
+
+/// Of a strip whose end goes aslant, the edges are displaced along the hair by ±slant beside what the strip is.
+TEST(RowHair, TheEdgesOfAStripThatGoesAslantSlideAlongTheirHair) {
+    constexpr double kHalf = 1e-3, kAside = 3e-4, kSlant = 4e-4, kBow = 2e-4;  // metres
+    Trail trail{.branch = 1, .strip = true};
+    for (const double along : {1e-3, 0.0}) {
+        Cut cut{.centre = {along, 0}, .a = kHalf, .b = 4e-4};
+        cut.e = {0, 1, 0};
+        trail.cuts.push_back(cut);
+        trail.along.push_back(0.9 + along);
+    }
+    const Recycled<Trail> before{trail};
+    for (Cut& cut : trail.cuts) cut.centre.y += kAside, cut.slant = {kSlant, 0}, cut.bow = {kBow, 0};
+    const TransverseLength across({trail, 0, trail.cuts.size()}, before, {0, 1});
+    const double edge = std::sqrt(0.25 * std::numbers::pi);
+    for (const double s : {-1.0, 0.0, 1.0}) {
+        const Vec2 moved{s * kSlant + (1 - s * s) * kBow, kAside};
+        // Places are linear between 17 of them.
+        EXPECT_NEAR(across.mean_sine(s * edge), kAside / glm::length(moved), 0.02) << s;
+        EXPECT_NEAR(across.sine_to(s * edge, {0, 1}), std::abs(moved.x) / glm::length(moved), 0.02) << s;
+    }
 }
 
 }  // namespace

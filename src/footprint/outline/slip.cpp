@@ -8,9 +8,13 @@ namespace {
 
 constexpr double kStill = 1e-7;  // metres from stamp to stamp: less is no motion but round-off of hair that sticks
 
-/// Middle and half width of a trail between its cuts.
+/// Where a trail's hair lies between its cuts.
 struct Place {
     Vec2 centre{0}, half{0};
+    Vec2 slant{0}, bow{0};  ///< of a strip, see Cut
+
+    /// Of hair at x in [−1, 1], from where a straight strip has it.
+    Vec2 bent(double x) const { return Cut{.slant = slant, .bow = bow}.bent(x); }
 };
 
 Place place_at(const Trail& trail, double along) {
@@ -21,7 +25,8 @@ Place place_at(const Trail& trail, double along) {
     const double run = a[i] - a[j], f = run > 1e-12 ? std::clamp((a[i] - along) / run, 0.0, 1.0) : 0;
     const Cut &p = trail.cuts[i], &q = trail.cuts[j];
     const auto half = [&](const Cut& cut) { return trail.strip ? Vec2(cut.broad()) : cut.a * Vec2(cut.e); };
-    return {glm::mix(p.centre, q.centre, f), glm::mix(half(p), half(q), f)};
+    return {glm::mix(p.centre, q.centre, f), glm::mix(half(p), half(q), f), glm::mix(p.slant, q.slant, f),
+            glm::mix(p.bow, q.bow, f)};
 }
 
 /// The trail of the same branch that has most of its hair.
@@ -72,7 +77,8 @@ TransverseLength::TransverseLength(const TrailPart& part, std::span<const Trail>
         const Place p = place_at(*was, along), q = place_at(trail, along);
         const Vec2 middle = q.centre - p.centre, spread = q.half - p.half;
         for (std::size_t k = 0; k < kPlaces; ++k) {
-            const Vec2 moved = middle + (2 * static_cast<double>(k) / (kPlaces - 1) - 1) * spread;
+            const double x = 2 * static_cast<double>(k) / (kPlaces - 1) - 1;
+            const Vec2 moved = middle + x * spread + (q.bent(x) - p.bent(x));
             measure_[k] += std::abs(run.x * moved.y - run.y * moved.x) / (glm::length(moved) + kStill);
             displacement_[k] += glm::length(run) * moved;
         }
