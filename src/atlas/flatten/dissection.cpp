@@ -12,7 +12,7 @@ constexpr std::uint32_t kSmall = 4;  // vertices that are one part: more are mor
 class Dissector {
   public:
     Dissector(const Neighbours& graph, std::span<const Vec2> at)
-        : graph_(graph), at_(at.begin(), at.end()), vertex_(at.size()), place_(at.size()) {
+        : graph_(graph), at_(at.begin(), at.end()), vertex_(at.size()), place_(at.size()), on_border_(at.size()) {
         for (Vec2& p : at_)
             if (!std::isfinite(p.x) || !std::isfinite(p.y)) p = Vec2(0);
         std::iota(vertex_.begin(), vertex_.end(), 0u);
@@ -31,14 +31,19 @@ class Dissector {
         if (end - begin <= kSmall) return add_part(begin, end, 0);
         const std::uint32_t middle = split(begin, end);
         // The smaller border of the two halves goes to the end.
-        const std::uint32_t left = n_next_to(begin, middle, middle, end), right = n_next_to(middle, end, begin, middle);
-        if (left < right) std::rotate(vertex_.begin() + begin, vertex_.begin() + middle, vertex_.begin() + end);
-        const std::uint32_t half = left < right ? begin + end - middle : middle;
-        for (std::uint32_t i = begin; i < end; ++i) place_[vertex_[i]] = i;
+        std::uint32_t n_left = 0, n_right = 0;
+        for (std::uint32_t i = begin; i < end; ++i) {
+            const bool left = i < middle;
+            const bool next = left ? is_next_to(vertex_[i], middle, end) : is_next_to(vertex_[i], begin, middle);
+            on_border_[vertex_[i]] = next;
+            (left ? n_left : n_right) += next;
+        }
+        if (n_left < n_right) std::rotate(vertex_.begin() + begin, vertex_.begin() + middle, vertex_.begin() + end);
+        const std::uint32_t half = n_left < n_right ? begin + end - middle : middle;
         const auto border = std::stable_partition(vertex_.begin() + half, vertex_.begin() + end,
-                                                  [&](std::uint32_t v) { return !is_next_to(v, begin, half); });
+                                                  [&](std::uint32_t v) { return !on_border_[v]; });
         const auto first = static_cast<std::uint32_t>(border - vertex_.begin());
-        for (std::uint32_t i = half; i < end; ++i) place_[vertex_[i]] = i;
+        for (std::uint32_t i = begin; i < end; ++i) place_[vertex_[i]] = i;
         const std::uint32_t n_roots = halve(begin, half) + halve(half, first);
         return add_part(first, end, n_roots);
     }
@@ -67,12 +72,6 @@ class Dissector {
         return false;
     }
 
-    std::uint32_t n_next_to(std::uint32_t from, std::uint32_t to, std::uint32_t begin, std::uint32_t end) const {
-        std::uint32_t n = 0;
-        for (std::uint32_t i = from; i < to; ++i) n += is_next_to(vertex_[i], begin, end) ? 1 : 0;
-        return n;
-    }
-
     std::uint32_t add_part(std::uint32_t begin, std::uint32_t end, std::uint32_t n_roots) {
         if (begin == end) return n_roots;
         out_.parts.push_back({static_cast<std::uint32_t>(out_.order.size()), end - begin, n_roots});
@@ -83,6 +82,7 @@ class Dissector {
     const Neighbours& graph_;
     std::vector<Vec2> at_;
     std::vector<std::uint32_t> vertex_, place_;  // vertices in the order so far; the place of each in it
+    std::vector<std::uint8_t> on_border_;         // of the halves cut last
     Dissection out_;
 };
 

@@ -39,11 +39,23 @@ Neighbours neighbours_of(const SymmetricMatrix& matrix) {
     }
     for (std::size_t i = 0; i + 1 < graph.start.size(); ++i) graph.start[i + 1] += graph.start[i];
     graph.neighbours.resize(2 * matrix.entries.size());
-    std::vector<std::uint32_t> next(graph.start.begin(), graph.start.end() - 1);
+    std::vector<std::uint32_t> end(graph.start.begin(), graph.start.end() - 1);
+    // Entries at one place are one neighbour.
+    const auto add = [&](std::uint32_t row, std::uint32_t column) {
+        const auto first = graph.neighbours.begin() + graph.start[row], last = graph.neighbours.begin() + end[row];
+        if (std::find(first, last, column) == last) graph.neighbours[end[row]++] = column;
+    };
     for (const SymmetricMatrix::Entry& e : matrix.entries) {
-        graph.neighbours[next[e.row]++] = e.column;
-        graph.neighbours[next[e.column]++] = e.row;
+        add(e.row, e.column);
+        add(e.column, e.row);
     }
+    std::uint32_t at = 0;
+    for (std::size_t i = 0; i < end.size(); ++i) {
+        const std::uint32_t from = std::exchange(graph.start[i], at);
+        for (std::uint32_t k = from; k < end[i]; ++k) graph.neighbours[at++] = graph.neighbours[k];
+    }
+    graph.start.back() = at;
+    graph.neighbours.resize(at);
     return graph;
 }
 
@@ -201,7 +213,7 @@ void LdltFactor::find_fronts(const Rows& rows) {
         front.values = size;
         size += std::size_t{front.n_pivots} * front.stride;
     }
-    values_.resize(size);
+    if (size > n_values_) values_ = std::make_unique_for_overwrite<double[]>(n_values_ = size);
 }
 
 /// Makes the lower half of the front from the matrix and what its children left.
@@ -249,7 +261,7 @@ bool LdltFactor::compute(SymmetricMatrix matrix, std::span<const Vec2> at) {
         const std::uint32_t size = front.n_pivots + front.n_beyond;
         assemble(rows, front, stack);
         if (!eliminate(dense_.data(), front.stride, size, front.n_pivots, inverse_.data() + front.first)) return false;
-        std::memcpy(values_.data() + front.values, dense_.data(),
+        std::memcpy(values_.get() + front.values, dense_.data(),
                     sizeof(double) * front.n_pivots * std::size_t{front.stride});
         for (std::uint32_t c = front.n_pivots; c < size; ++c) {
             const double* const column = dense_.data() + c * std::size_t{front.stride};
@@ -276,7 +288,7 @@ void LdltFactor::solve(std::span<Vec2> x) {
         std::fill_n(y_front_.begin(), front.stride, 0);
         std::copy_n(x_.begin() + front.first, front.n_pivots, x_front_.begin());
         std::copy_n(y_.begin() + front.first, front.n_pivots, y_front_.begin());
-        substitute_down(values_.data() + front.values, front.stride, front.n_pivots, x_front_.data(), y_front_.data());
+        substitute_down(values_.get() + front.values, front.stride, front.n_pivots, x_front_.data(), y_front_.data());
         for (std::uint32_t i = 0; i < front.n_pivots; ++i) {
             x_[front.first + i] = x_front_[i] * inverse_[front.first + i];
             y_[front.first + i] = y_front_[i] * inverse_[front.first + i];
@@ -298,7 +310,7 @@ void LdltFactor::solve(std::span<Vec2> x) {
             x_front_[front.n_pivots + i] = x_[row];
             y_front_[front.n_pivots + i] = y_[row];
         }
-        substitute_up(values_.data() + front.values, front.stride, front.n_pivots, x_front_.data(), y_front_.data());
+        substitute_up(values_.get() + front.values, front.stride, front.n_pivots, x_front_.data(), y_front_.data());
         std::copy_n(x_front_.begin(), front.n_pivots, x_.begin() + front.first);
         std::copy_n(y_front_.begin(), front.n_pivots, y_.begin() + front.first);
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -49,7 +50,8 @@ class LdltFactor {
     std::vector<std::uint32_t> place_;   ///< row of L of each row of the matrix
     std::vector<Front> fronts_;          ///< children before parents
     std::vector<std::uint32_t> beyond_;  ///< rows of L, ascending for each front
-    std::vector<double> values_;         ///< of L, column by column
+    std::unique_ptr<double[]> values_;   ///< of L, column by column
+    std::size_t n_values_ = 0;           ///< that there is room for
     std::vector<double> inverse_;        ///< 1 / D
     std::vector<double> dense_;          ///< the front being factored, column by column
     std::vector<double> x_, y_, x_front_, y_front_;

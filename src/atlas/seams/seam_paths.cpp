@@ -119,7 +119,9 @@ void SeamPaths::mark_band(const std::vector<std::uint32_t>& chain, float reach, 
     };
     const auto offer_ends = [&](std::uint32_t h, float d) {
         const std::uint32_t v = end(h);
-        if (!border_[v] && degree_[v] == 0) offer(v, d + patch_.length[h], patch_.twin[h]);
+        const float there = d + patch_.length[h];
+        // Most are nearer already, which is asked first.
+        if (there < s.band_[v] && !border_[v] && degree_[v] == 0) offer(v, there, patch_.twin[h]);
     };
     for (std::size_t i = 1; i < chain.size(); ++i) offer(origin(chain[i]), 0, chain[i]);
     for (const auto* ends : {&s.starts_, &s.goals_})
@@ -160,13 +162,14 @@ SeamMove SeamPaths::shorten(std::vector<std::uint32_t> chain, float reach, Corne
     float best = kShorter * now;
     const auto offer = [&](std::uint32_t h, float d) {
         const std::uint32_t v = end(h);
-        if (d >= best) return;
-        if (s.goal_[patch_.twin[h]]) {
-            best = d;
-            last = h;
+        if (d >= best || d >= s.distance_[v]) return;
+        if (s.band_[v] == kFar) {  // as all goals are, which lie on other seams
+            if (s.goal_[patch_.twin[h]]) {
+                best = d;
+                last = h;
+            }
             return;
         }
-        if (s.band_[v] == kFar || d >= s.distance_[v]) return;
         if (s.distance_[v] == kFar) s.touched_.push_back(v);
         s.distance_[v] = d;
         s.weight_from_[v] = h;
