@@ -7,12 +7,37 @@
 namespace tuft::atlas {
 namespace {
 
+constexpr std::uint32_t kNone = ~0u;
 constexpr std::uint32_t kSmall = 4;  // vertices that are one part: more are more arithmetic, fewer more overhead
+
+/// Place of each vertex in a breadth-first search: neighbours lie near each other in it.
+std::vector<std::uint32_t> breadth_first_ranks(const Neighbours& graph, std::size_t n) {
+    std::vector<std::uint32_t> rank(n, kNone), queue;
+    queue.reserve(n);
+    for (std::uint32_t seed = 0; seed < n; ++seed) {
+        if (rank[seed] != kNone) continue;
+        const auto reach = [&](std::uint32_t v) {
+            if (rank[v] != kNone) return;
+            rank[v] = static_cast<std::uint32_t>(queue.size());
+            queue.push_back(v);
+        };
+        std::size_t next = queue.size();
+        for (reach(seed); next < queue.size(); ++next)
+            for (std::uint32_t i = graph.start[queue[next]]; i < graph.start[queue[next] + 1]; ++i)
+                reach(graph.neighbours[i]);
+    }
+    return rank;
+}
 
 class Dissector {
   public:
     Dissector(const Neighbours& graph, std::span<const Vec2> at)
-        : graph_(graph), at_(at.begin(), at.end()), vertex_(at.size()), place_(at.size()), on_border_(at.size()) {
+        : graph_(graph),
+          at_(at.begin(), at.end()),
+          rank_(breadth_first_ranks(graph, at.size())),
+          vertex_(at.size()),
+          place_(at.size()),
+          on_border_(at.size()) {
         for (Vec2& p : at_)
             if (!std::isfinite(p.x) || !std::isfinite(p.y)) p = Vec2(0);
         std::iota(vertex_.begin(), vertex_.end(), 0u);
@@ -60,7 +85,7 @@ class Dissector {
         std::nth_element(vertex_.begin() + begin, vertex_.begin() + middle, vertex_.begin() + end,
                          [&](std::uint32_t v, std::uint32_t w) {
                              const double a = at_[v][axis], b = at_[w][axis];
-                             return a != b ? a < b : v < w;
+                             return a != b ? a < b : rank_[v] < rank_[w];
                          });
         for (std::uint32_t i = begin; i < end; ++i) place_[vertex_[i]] = i;
         return middle;
@@ -81,8 +106,9 @@ class Dissector {
 
     const Neighbours& graph_;
     std::vector<Vec2> at_;
+    std::vector<std::uint32_t> rank_;            // by which vertices at one place are told apart
     std::vector<std::uint32_t> vertex_, place_;  // vertices in the order so far; the place of each in it
-    std::vector<std::uint8_t> on_border_;         // of the halves cut last
+    std::vector<std::uint8_t> on_border_;        // of the halves cut last
     Dissection out_;
 };
 
