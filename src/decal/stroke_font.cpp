@@ -60,6 +60,8 @@ constexpr std::array kGlyphs{Glyph{'0', "0006464000"},
                              Glyph{'(', "26141220"},
                              Glyph{')', "26343220"},
                              Glyph{'_', "0040"},
+                             Glyph{'#', "1016 3036 0242 0444"},
+                             Glyph{'*', "0343 1135 3115"},
                              Glyph{' ', ""}};
 
 const char* lines_of(char c) {

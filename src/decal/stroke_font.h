@@ -11,7 +11,7 @@
 namespace tuft::decal {
 
 /// Returns the lines of a text with capitals `size` high; `at` is the left end of the base line, y up. Small letters
-/// are drawn as capitals. Other characters that are not 0–9, A–Z, space or one of -.,:/%+=()_ are boxes.
+/// are drawn as capitals. Other characters that are not 0–9, A–Z, space or one of -.,:/%+=()_#* are boxes.
 std::vector<std::vector<Vec2>> text_lines(std::string_view text, const Vec2& at, double size);
 
 /// Returns the width of the text.

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <string>
 
 #include "core/system/parallel.h"
+#include "decal/stroke_font.h"
 #include "ink/colour/pigments.h"
 #include "surfaces.h"
 
@@ -276,6 +278,13 @@ TEST(Colours, SpreadFromPaintToTheTexelsRoundIt) {
         const bool near = i % 5 >= 1 && i % 5 <= 3 && i / 5 >= 1 && i / 5 <= 3;
         EXPECT_EQ(colour.texels[3 * i], near ? 10 : 200) << i;
     }
+}
+
+// Inks are named by colours, brushes by a factor; a character without lines of its own is a box.
+TEST(StrokeFont, DrawsWhatNamesOfInksAndBrushesAreMadeOf) {
+    const auto box = text_lines("$", {}, 1);
+    for (const char c : std::string("0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ-.,:/%+=()_#*"))
+        EXPECT_NE(text_lines(std::string(1, c), {}, 1), box) << c;
 }
 
 }  // namespace
