@@ -71,18 +71,24 @@ TEST_F(Decals, LaysAMaskFlatWhereNothingIsPainted) {
     EXPECT_NE(wrong.err.find("did you mean 'band'?"), std::string::npos) << wrong.err;
 }
 
-// One that is made, named with a slash at its end. Its pictures take seconds, so it is written once.
-TEST_F(Decals, WritesItsGuideIntoAFolderNamedWithASlash) {
+// One that is made, named with a slash at its end. Its pictures take seconds, so it is written once: for a piece on the
+// underside, which the usual view does not show.
+TEST_F(Decals, WritesItsGuideIntoAFolderNamedWithASlashAndShowsThePiecesInIt) {
     write("s.inkml", stroke_file());
     const std::string project = path("p.tuft");
-    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --atlas-size 512 --quiet --strokes " + path("s.inkml") +
-                   " --project " + project)
+    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --sides turned --atlas-size 512 --quiet --strokes " +
+                   path("s.inkml") + " --project " + project)
                   .status,
               0);
     const test::Ran made = tuft("decals " + project + " -o " + path("x.dxf") + " --quiet --guide " + path("new/"));
     EXPECT_EQ(made.status, 0) << made.err;
     for (const char* file : {"lines.obj", "overview.png", "piece-01.png"})
         EXPECT_TRUE(fs::exists(path("new") + "/" + file)) << file;
+    const io::Image8 overview = io::read_image8(path("new/overview.png"));
+    std::size_t n_magenta = 0;
+    for (std::size_t i = 0; i + 2 < overview.pixels.size(); i += static_cast<std::size_t>(overview.channels))
+        n_magenta += overview.pixels[i] > 190 && overview.pixels[i + 1] < 30 && overview.pixels[i + 2] > 110;
+    EXPECT_GT(n_magenta, 200u);  // of a cut line 2.5 pixels wide
     write("file", "x");
     for (const char* guide : {"file", "file/", "missing/guide/"}) {
         const test::Ran ran = tuft("decals " + project + " -o " + path("y.dxf") + " --guide " + path(guide));

@@ -22,6 +22,8 @@ constexpr double kSpacing = 1e-3;           // metres between points of a line o
 constexpr double kAround = 1.7;             // width of the view over the size of the piece
 constexpr double kLeastView = 0.03;         // metres
 constexpr double kSteepest = 80;            // degrees of elevation
+constexpr double kFromAbove = 58;           // degrees of elevation, into a bowl
+constexpr double kHardlyMore = 1.05;        // what another view of all pieces must show over the one before
 constexpr double kLevelArrow = 0.4;         // rise of an arrow over its length below which it points to the back
 
 /// A piece on the model.
@@ -133,6 +135,39 @@ View view_of(const PlacedPiece& piece, const mesh::TriangleMesh& mesh) {
     return view;
 }
 
+/// The part of a piece's cut line that a picture shows.
+double seen_part(const PlacedPiece& piece, const PictureOverlay& overlay) {
+    double seen = 0, all = 0;
+    for (const SurfacePath& path : piece.outline)
+        for (std::size_t i = 0; i < path.points.size(); ++i) {
+            seen += overlay.shows(path.points[i], path.normals[i]) ? 1 : 0;
+            all += 1;
+        }
+    return all > 0 ? seen / all : 0;
+}
+
+/// The view that shows most of the pieces: the usual one where others show hardly more.
+View view_of_all(const std::vector<PlacedPiece>& pieces, const stroke::Model& model) {
+    View best;
+    double most = -1;
+    for (const double elevation : {View().elevation, kFromAbove, -View().elevation})
+        for (const double turn : {0, 90, 180, 270}) {
+            View view;
+            view.width = kWidth;
+            view.height = kHeight;
+            view.azimuth += turn;
+            view.elevation = elevation;
+            const render::Camera camera = camera_of(view, *model.mesh);
+            const PictureOverlay overlay({.width = 1, .height = 1, .rgb = {0, 0, 0}}, camera, *model.query);
+            double seen = 0;
+            for (const PlacedPiece& piece : pieces) seen += seen_part(piece, overlay);
+            if (seen <= kHardlyMore * most) continue;
+            most = seen;
+            best = view;
+        }
+    return best;
+}
+
 const Vec3 kOwn = render::linear_colour(210, 0, 140), kOther = render::linear_colour(90, 110, 140);
 
 void write_guide_picture(const fs::path& path, const GuideRequest& request, const std::vector<PlacedPiece>& pieces,
@@ -193,9 +228,7 @@ std::vector<fs::path> write_placing_guide(const fs::path& folder, const GuideReq
         const std::string text = lines_text(request, pieces);
         write_file(beside / "lines.obj", text.data(), text.size());
         files.push_back(folder / "lines.obj");
-        View all;
-        all.width = kWidth;
-        all.height = kHeight;
+        const View all = view_of_all(pieces, request.project.model);
         write_guide_picture(beside / "overview.png", request, pieces, 0, all, console);
         files.push_back(folder / "overview.png");
         for (const PlacedPiece& piece : pieces) {

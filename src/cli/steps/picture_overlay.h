@@ -30,6 +30,8 @@ class PictureOverlay {
   public:
     PictureOverlay(const render::Image& image, const render::Camera& camera, const mesh::SurfaceQuery& query);
 
+    /// Whether a point of the surface is seen.
+    bool shows(const Vec3& p, const Vec3& normal) const { return seen(p, normal).has_value(); }
     /// Draw what is seen of a path, an arrow or a number on the surface. Widths and sizes in pixels, linear colours.
     void draw(const SurfacePath& path, double width, const Vec3& colour);
     void draw_arrow(const SurfacePath& arrow, double width, const Vec3& colour);
