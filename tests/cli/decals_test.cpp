@@ -88,7 +88,7 @@ TEST_F(Decals, WritesItsGuideIntoAFolderNamedWithASlashAndShowsThePiecesInIt) {
     std::size_t n_magenta = 0;
     for (std::size_t i = 0; i + 2 < overview.pixels.size(); i += static_cast<std::size_t>(overview.channels))
         n_magenta += overview.pixels[i] > 190 && overview.pixels[i + 1] < 30 && overview.pixels[i + 2] > 110;
-    EXPECT_GT(n_magenta, 200u);  // of a cut line 2.5 pixels wide
+    EXPECT_GT(n_magenta, 100u);  // of a cut line 2.5 pixels wide, some 90 long and seen at a slant; 0 from above
     write("file", "x");
     for (const char* guide : {"file", "file/", "missing/guide/"}) {
         const test::Ran ran = tuft("decals " + project + " -o " + path("y.dxf") + " --guide " + path(guide));
