@@ -154,8 +154,17 @@ TEST(TipLag, IsMeasuredOncePerPresetAndTakenFromTheCacheToTheBit) {
     // What is read counts as used: the cache dates it anew.
     const fs::file_time_type past = fs::last_write_time(folder) - std::chrono::hours(1);
     for (const fs::directory_entry& entry : entries()) fs::last_write_time(entry, past);
+    const fs::path linked = folder.string() + "-linked";
+    fs::remove_all(linked);
+    fs::create_directory(linked);
+    for (const fs::directory_entry& entry : entries())
+        fs::create_hard_link(entry.path(), linked / entry.path().filename());
     EXPECT_EQ(values_of(second), measured);
-    for (const fs::directory_entry& entry : entries()) EXPECT_GT(fs::last_write_time(entry), past);
+    for (const fs::directory_entry& entry : entries()) {
+        EXPECT_GT(fs::last_write_time(entry), past);
+        EXPECT_EQ(fs::hard_link_count(entry.path()), 2u) << "one that is measured again is another file";
+    }
+    fs::remove_all(linked);
     EXPECT_EQ(entries().size(), n);
     // A brush that differs in the last bit is another one; under another name it is the same.
     preset.name = "mine";

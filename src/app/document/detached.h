@@ -23,7 +23,7 @@ std::future<std::invoke_result_t<Work>> run_detached(Work work) {
 /// Called before the result is dropped: work that is nearly done ends first, so that none runs when the program ends;
 /// work that never answers is left alone after 0.2 s.
 template <typename Result>
-void leave(const std::future<Result>& work) {
+void wait_briefly(const std::future<Result>& work) {
     if (work.valid()) work.wait_for(std::chrono::milliseconds(200));
 }
 

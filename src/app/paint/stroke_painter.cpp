@@ -136,12 +136,13 @@ void StrokePainter::direct(std::vector<stroke::JournalEntry>& entries, const Gro
 
 namespace {
 
-/// Inks of entries that are named by colours (`#rrggbb`).
-std::vector<std::string> colours_of(const std::vector<stroke::JournalEntry>& entries) {
+/// Inks of entries that are named by colours (`#rrggbb`) and are not known yet.
+std::vector<std::string> new_colours_of(const std::vector<stroke::JournalEntry>& entries,
+                                        const stroke::Materials& materials) {
     std::vector<std::string> colours;
     for (const stroke::JournalEntry& entry : entries)
         for (std::string& ink : stroke::inks_of(entry))
-            if (ink.starts_with('#')) colours.push_back(std::move(ink));
+            if (ink.starts_with('#') && !materials.has_ink(ink)) colours.push_back(std::move(ink));
     return colours;
 }
 
@@ -156,7 +157,7 @@ void StrokePainter::paint_drawing(PaintDrawing& command) {
     const std::uint64_t before = document.journal().next_id();
     // Of a drawing that is refused no ink stays, or the next one would be mixed from its pigments. Brushes are chosen
     // by the film of inks, so that those of lines are mixed from there on.
-    const std::vector<std::string> colours = colours_of(command.drawing.entries);
+    const std::vector<std::string> colours = new_colours_of(command.drawing.entries, document.materials());
     const auto forget_unused = [&] {
         if (document.journal().next_id() != before) return;
         std::vector<std::string> unused;

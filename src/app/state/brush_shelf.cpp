@@ -90,7 +90,7 @@ void BrushShelf::look() {
 }
 
 BrushShelf::~BrushShelf() {
-    leave(looking_);
+    wait_briefly(looking_);
 }
 
 void BrushShelf::wait() const {

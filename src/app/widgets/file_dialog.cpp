@@ -123,7 +123,10 @@ void FileDialog::refuse(const Message& why) {
 }
 
 void FileDialog::go(const fs::path& folder) {
-    if (folder_ != folder.lexically_normal()) sketch_ = {};  // a disk that does not answer holds up no other folder
+    if (folder_ != folder.lexically_normal()) {  // a disk that does not answer holds up no other folder
+        wait_briefly(sketch_.reading);
+        sketch_ = {};
+    }
     folder_ = folder.lexically_normal();
     read_folder();
 }
@@ -289,7 +292,7 @@ bool FileDialog::draw_list(Ui& ui, float width) {
 }
 
 FileDialog::~FileDialog() {
-    leave(sketch_.reading);
+    wait_briefly(sketch_.reading);
 }
 
 bool FileDialog::busy() const {

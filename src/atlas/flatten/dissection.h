@@ -31,8 +31,8 @@ struct Dissection {
 /// Halves the vertices across the longer side of their bounding box, again and again [George1973]. Those of one half
 /// that have neighbours in the other are a part of their own, the parent of both; halves of a few vertices are parts.
 /// `at` [n]: where the vertices lie; any numbers give a valid order, edges that are short a good one. Vertices at one
-/// place are halved in the order of a breadth-first search. For meshes of n
-/// vertices the factors have at most 4 n log₂ n entries, 2.7 n log₂ n for 10,000. Cost: n log n.
+/// place are halved in the order of a breadth-first search. Of meshes of n vertices whose edges are short the factors
+/// have about 4 n log₂ n entries or fewer, 2.7 n log₂ n for 10,000. Cost: n log n.
 Dissection dissect(const Neighbours& graph, std::span<const Vec2> at);
 
 }  // namespace tuft::atlas

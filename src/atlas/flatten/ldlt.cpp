@@ -40,19 +40,19 @@ Neighbours neighbours_of(const SymmetricMatrix& matrix) {
     for (std::size_t i = 0; i + 1 < graph.start.size(); ++i) graph.start[i + 1] += graph.start[i];
     graph.neighbours.resize(2 * matrix.entries.size());
     std::vector<std::uint32_t> end(graph.start.begin(), graph.start.end() - 1);
-    // Entries at one place are one neighbour.
-    const auto add = [&](std::uint32_t row, std::uint32_t column) {
-        const auto first = graph.neighbours.begin() + graph.start[row], last = graph.neighbours.begin() + end[row];
-        if (std::find(first, last, column) == last) graph.neighbours[end[row]++] = column;
-    };
     for (const SymmetricMatrix::Entry& e : matrix.entries) {
-        add(e.row, e.column);
-        add(e.column, e.row);
+        graph.neighbours[end[e.row]++] = e.column;
+        graph.neighbours[end[e.column]++] = e.row;
     }
+    // Entries at one place are one neighbour.
+    std::vector<std::uint32_t> neighbour_of(end.size(), ~0u);  // the last row that has this one
     std::uint32_t at = 0;
-    for (std::size_t i = 0; i < end.size(); ++i) {
+    for (std::uint32_t i = 0; i < end.size(); ++i) {
         const std::uint32_t from = std::exchange(graph.start[i], at);
-        for (std::uint32_t k = from; k < end[i]; ++k) graph.neighbours[at++] = graph.neighbours[k];
+        for (std::uint32_t k = from; k < end[i]; ++k) {
+            const std::uint32_t v = graph.neighbours[k];
+            if (std::exchange(neighbour_of[v], i) != i) graph.neighbours[at++] = v;
+        }
     }
     graph.start.back() = at;
     graph.neighbours.resize(at);

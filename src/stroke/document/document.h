@@ -86,9 +86,7 @@ class Document {
     void use(const ink::Ink& ink) { materials_.use(ink); }
     void use(const ink::Substrate& substrate) { materials_.use(substrate); }
     /// `Materials::mix_together`.
-    std::vector<std::string> mix_together(const std::map<std::string, double>& weights) {
-        return materials_.mix_together(weights);
-    }
+    void mix_together(const std::map<std::string, double>& weights) { materials_.mix_together(weights); }
     /// `Materials::forget_inks`. No entry of the journal may name one of them.
     void forget_inks(const std::vector<std::string>& names) { materials_.forget_inks(names); }
 

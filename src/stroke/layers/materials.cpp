@@ -20,7 +20,7 @@ const ink::Ink& Materials::ink(const std::string& name) const {
     return inks_.emplace(name, ink::ink_named(name, substrate_, pigments_in_use(), &*searches_)).first->second;
 }
 
-std::vector<std::string> Materials::mix_together(const std::map<std::string, double>& weights) {
+void Materials::mix_together(const std::map<std::string, double>& weights) {
     std::vector<std::string> names;
     std::vector<ink::WeightedColour> colours;
     for (const auto& [name, weight] : weights) {
@@ -29,7 +29,7 @@ std::vector<std::string> Materials::mix_together(const std::map<std::string, dou
         names.push_back(name);
         colours.push_back({*colour, weight});
     }
-    if (colours.empty()) return {};
+    if (colours.empty()) return;
     const std::vector<ink::Pigment> chosen =
         ink::choose_pigments(colours, ink::shipped_pigments(), pigments_in_use(), substrate_);
     ink::MixSearches searches(chosen, substrate_);
@@ -38,7 +38,6 @@ std::vector<std::string> Materials::mix_together(const std::map<std::string, dou
         ink.name = names[i];
         use(ink);
     }
-    return names;
 }
 
 void Materials::forget_inks(const std::vector<std::string>& names) {

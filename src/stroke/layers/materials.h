@@ -39,10 +39,12 @@ class Materials {
     /// Returns the ink of this name; throws `Error` when there is none. A colour `#rrggbb` is an ink, too: the nearest
     /// mix on the substrate, of pigments for which the document's layers have planes (`ink::ink_named`).
     const ink::Ink& ink(const std::string& name) const;
+    /// Returns whether an ink of this name was given to `use`, mixed or asked for.
+    bool has_ink(const std::string& name) const { return inks_.contains(name); }
     /// Mixes the inks of a drawing's colours (`#rrggbb`) from pigments that suit all of them together
     /// (`ink::choose_pigments`), because a canvas has planes for few. Those already known stay. Without it each is
-    /// mixed when it is first asked for, and the last ones get what is left. Returns the names of those it mixed.
-    std::vector<std::string> mix_together(const std::map<std::string, double>& weights);
+    /// mixed when it is first asked for, and the last ones get what is left.
+    void mix_together(const std::map<std::string, double>& weights);
     /// Inks of these names are as if they had never been asked for. No layer may hold any.
     void forget_inks(const std::vector<std::string>& names);
     /// What the ink is painted on.

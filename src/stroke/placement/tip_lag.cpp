@@ -75,7 +75,7 @@ std::vector<T> TiltedTipLag::read_or_measure(std::string_view kind, std::span<co
     };
     if (cache_.read(key, take)) return values;
     values = measure();
-    cache_.write(key, [&](CacheWriter& entry) { entry.put(values); });
+    if (cache_.write(key, [&](CacheWriter& entry) { entry.put(values); })) has_written_ = true;
     return values;
 }
 
@@ -171,7 +171,6 @@ const std::vector<TipLag>& TiltedTipLag::as_held() {
     std::call_once(measured_, [&] {
         const std::size_t n = 1 + (bends_across(preset_) ? kDepths.size() : kHeldDepths.size());
         as_held_ = read_or_measure<TipLag>("as held", {}, n, [&] { return measure_as_held(); });
-        cache_.trim();
     });
     return as_held_;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <mutex>
 #include <optional>
@@ -33,6 +34,11 @@ class TiltedTipLag {
   public:
     explicit TiltedTipLag(brush::Preset preset, DiskCache cache = {})
         : preset_(std::move(preset)), cache_(std::move(cache)) {}
+    ~TiltedTipLag() {
+        if (has_written_) cache_.trim();
+    }
+    TiltedTipLag(const TiltedTipLag&) = delete;
+    TiltedTipLag& operator=(const TiltedTipLag&) = delete;
 
     /// Returns the additional displacement of the hand, metres ahead along the path and to its left, that puts the line
     /// onto the path. `lean`: radians along the path and to its left, up ∝ normal + tan(lean.x) ahead + tan(lean.y)
@@ -64,7 +70,8 @@ class TiltedTipLag {
 
     brush::Preset preset_;
     DiskCache cache_;
-    std::mutex mutex_;  // of `nodes_` while one is measured; measured ones do not change
+    mutable std::atomic<bool> has_written_{false};  // to the cache
+    std::mutex mutex_;                              // of `nodes_` while one is measured; measured ones do not change
     std::array<std::vector<Vec2>, kAlong.size() * kAcross.size() * kTurns.size()> nodes_;  // ahead and left by depth
     std::once_flag measured_;
     std::vector<TipLag> as_held_;

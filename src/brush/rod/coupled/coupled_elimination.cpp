@@ -30,12 +30,12 @@ Arm arm_of(const Solver& s, int j) {
 }
 
 constexpr int kMaxMoves = 3 * kMaxCoupled, kMaxSteps = 2 * kMaxCoupled;
-/// Columns of a segment's rows: the moves x of the nodes (3 a rod), the steps v of the segments inboard (2 a rod) and
-/// the right-hand side; rounded up to whole vectors.
-constexpr int kLanes = 8;
+constexpr int kLanes = 8;  // columns that are computed together
 constexpr int whole_lanes(int columns) {
     return (columns + kLanes - 1) / kLanes * kLanes;
 }
+/// Columns of a segment's rows: the moves x of the nodes (3 a rod), the steps v of the segments inboard (2 a rod) and
+/// the right-hand side; rounded up to whole vectors.
 constexpr int kMaxColumns = whole_lanes(kMaxMoves + kMaxSteps + 1);
 
 /// Rows of segment j of all rods as it was eliminated: with U = Rᵀ R, Z = R⁻ᵀ [X | in | g].
