@@ -13,7 +13,7 @@ constexpr double kFadeStiffness = 1000;   // N/m
 constexpr double kFadeFree = 0.01;        // N that g may jump in a period
 constexpr double kFadeRate = 0.06;        // N by which the offset falls in a period
 constexpr double kRestoreTime = 0.15;     // s
-constexpr double kTankFull = 30e-6;       // e_0, J, lent at the beginning of a contact
+constexpr double kTankKeeps = 30e-6;      // e_0, J, of what came in and is stored nowhere; in the air, at least
 constexpr double kTankStiffness = 1.25;   // of K: what a full spring gives is never held back
 constexpr double kMostDelayed = 12;       // periods
 constexpr double kLeast = 0.5e-6;         // J to which an empty tank is filled, so that it does not lock at no force
@@ -113,13 +113,29 @@ void settle_tank(const LawOptions& options, LawState& s, const LawInput& in) {
         const Vec3 change = kCountedShare * (acted.mean - s.counted_force);
         s.tank -= acted.taken + kCountError * count * glm::length(change);
         s.counted_force += change;
+        s.landed += glm::length(moved);
         s.played = in.arm;
         s.acted = {};
         s.n_acted = 0;
     }
     s.tank -= glm::dot(s.moment, turn_between(s.rotation, in.rotation));
-    s.repaid = std::clamp(s.tank - kTankFull, s.repaid, kTankFull);
-    if (const double lends = std::min(kLeast - (s.tank - s.repaid), kMostLent - s.lent); lends > 0) {
+}
+
+/// Step 6: what the tank holds at the beginning of a contact, and at most in one, where hair has stored `stored` J.
+void fill_tank(LawState& s, bool was_free, double stored) {
+    if (s.free) {
+        // A spring that the fade drew out is no income.
+        s.tank = std::clamp(s.tank, kTankKeeps, kTankKeeps + s.coupled);
+        s.lent = 0;
+        return;
+    }
+    if (was_free) {
+        s.tank = s.coupled;
+        s.landed = 0;
+    }
+    // What the hair lost is not kept for later, but for e_0; hair that has taken a set may have less than none.
+    s.tank = std::min(s.tank, kTankKeeps + std::max(0.0, stored) + s.coupled);
+    if (const double lends = std::min(kLeast - s.tank, kMostLent - s.lent); lends > 0) {
         s.tank += lends;
         s.lent += lends;
     }
@@ -130,17 +146,28 @@ double tank_stiffness(const LawOptions& options) {
     return std::min(options.limits.max_stiffness / options.scale, kTankStiffness * coupling_of(options));
 }
 
+/// a of a hand at rest, m: the path that it can make while a force acts.
+double path_from_rest(const LawOptions& options, const LawState& s) {
+    return kMostAcceleration * T * T * static_cast<double>(1 + s.delayed) + options.limits.count * options.scale;
+}
+
+/// w, J. A spring of K that is pressed by x has brought in ½ K x², less ½ count K x for counts, and needs K x a: it
+/// lacks ½ K b² at most, at x = b, and nothing from x = 2 b on.
+double landing_loan(const LawOptions& options, const LawState& s) {
+    const double b = path_from_rest(options, s) + kCountError * options.limits.count * options.scale;
+    return 0.5 * coupling_of(options) * b * b * std::clamp(2 - 0.5 * s.landed / b, 0.0, 1.0);
+}
+
 /// e′, J.
-double energy_left(const LawState& s, const Vec3& moved) {
+double energy_left(const LawOptions& options, const LawState& s, const Vec3& moved) {
     double pending = 0;  // what forces on their way will take, if the hand goes on
     for (std::size_t i = 1; i <= s.delayed; ++i) pending += std::max(0.0, glm::dot(sent(s, i), moved));
-    return std::max(0.0, std::max(0.0, s.tank - s.repaid) - pending);
+    return std::max(0.0, s.tank + landing_loan(options, s) - pending);
 }
 
 /// a: the path along `u` that the hand can make while a force acts, m.
 double path_ahead(const LawOptions& options, const LawState& s, const Vec3& moved, const Vec3& u) {
-    const double count = options.limits.count * options.scale;
-    return glm::dot(moved, u) + kMostAcceleration * T * T * static_cast<double>(1 + s.delayed) + count;
+    return glm::dot(moved, u) + path_from_rest(options, s);
 }
 
 /// Step 6: the greatest force along a path `ahead` that the tank lets out.
@@ -178,7 +205,7 @@ void restart_law(LawState& state, const Vec3& arm, const Quat& rotation) {
     state.started = true;
     state.arm = state.root = state.played = arm;
     state.rotation = rotation;
-    state.tank = kTankFull;
+    state.tank = kTankKeeps;
 }
 
 LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
@@ -212,17 +239,10 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     s.coupled = 0.5 * K * glm::dot(stretch, stretch) + 0.5 * m * glm::dot(velocity, velocity);
     const bool was_free = s.free;
     s.free = !touching && glm::length(s.offset) < kFree;
-    // A spring that the fade drew out is no income, nor is what came in before the contact and is not in the coupling.
-    if (s.free || was_free) s.tank = std::clamp(s.tank, kTankFull, kTankFull + s.coupled);
-    if (s.free) {
-        s.lent = s.repaid = 0;
-        s.restored *= 1 - T / kRestoreTime;
-    }
-    const double stored = in.hair ? gain * in.hair->stored : 0;
-    // What the hair lost is not kept for later; hair that has taken a set may have less than none.
-    s.tank = std::min(s.tank, s.repaid + kTankFull + std::max(0.0, stored) + s.coupled);
+    if (s.free) s.restored *= 1 - T / kRestoreTime;
+    fill_tank(s, was_free, in.hair ? gain * in.hair->stored : 0);
     LawOutput out{.root = root, .hard = held.hard};
-    double left = energy_left(s, moved);
+    double left = energy_left(options, s, moved);
     if (const double size = glm::length(f); size > 0) {
         const double ahead = path_ahead(options, s, moved, f / size), most = most_force(options, left, ahead);
         out.limited = size > most;

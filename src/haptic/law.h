@@ -30,16 +30,18 @@
 ///    meanwhile, sent as long ago as the delay says (of two periods the worse). The true position is within half a
 ///    count of the measured one, so that by Abel's summation the second term, of f₋ smoothed over three of its motions,
 ///    bounds what the count hides.
-///    e <= r + e_0 + G stored + ½ K |y − x − s|² + ½ m v². When free, e is at least e_0, r is 0 and no hair stores
-///    anything; in the first period of a contact no hair has stored anything yet. e_0 is lent: r of it, as much as has
-///    come in since, stays in the tank. An empty tank is filled to 0.5 µJ, with 0.8 µJ at most in a contact, from which
-///    a hand that presses fills it by itself.
+///    e <= e_0 + G stored + ½ K |y − x − s|² + ½ m v², e_0 = 30 µJ. A contact begins with e = ½ K |y − x − s|² + ½ m
+///    v², which came from the hand. An empty tank is filled to 0.5 µJ, with 0.8 µJ at most in a contact, from which a
+///    hand that moves fills it by itself. When free, e is at least e_0.
 ///
 ///        |f| <= e′ / a where e′ < k a², else √(2 k e′ − k² a²);   a = Δx · f̂ + 60 m/s² T² + count,
 ///
-///    e_0 = 30 µJ, k = min(k_max, 1.25 K); e′ is e − r less what forces on their way will take. A force that ends with
-///    its energy so falls by k a a period at most. Where a < 0 the tank only fills: |f| <= √(2 k e′) − k a.
-///    |G τ| <= (e′ − |f| a) / (Δθ · τ̂ + 500 rad/s² T²): hair that works on the wrist does so from the same tank.
+///    k = min(k_max, 1.25 K); e′ is e + w less what forces on their way will take. A force that ends with its energy so
+///    falls by k a a period at most. Where a < 0 the tank only fills: |f| <= √(2 k e′) − k a.
+///    A landing lends w = ½ K b², b = ½ count + a of a hand at rest: so much a spring of K lacks, pressed slowly from
+///    nothing, to keep what the limit of |f| asks for. w ends linearly between 2 b and 4 b of the contact's path.
+///
+///        |G τ| <= (e′ − |f| a) / (Δθ · τ̂ + 500 rad/s² T²):   hair that works on the wrist draws on the same tank.
 ///
 /// It holds while the hand accelerates by less than 60 m/s² and the wrist by less than 500 rad/s².
 namespace tuft::haptic {
@@ -77,7 +79,7 @@ struct LawState {
     std::size_t delayed = 0;  ///< periods until a force acts
     double tank = 0;          ///< e, J
     double lent = 0;          ///< J, to an empty tank in this contact
-    double repaid = 0;        ///< J of e_0 that came in since and stays
+    double landed = 0;        ///< m, path of x′ since the contact began
     double coupled = 0;       ///< J, in the spring of the coupling and the moving root
     bool free = true;         ///< neither hair nor ferrule touches
 };

@@ -168,6 +168,18 @@ TEST(Trial, WhatCameInBeforeAContactGivesNothingBack) {
     EXPECT_GT(r.contacts, 2u);
 }
 
+// A hand that comes to rest just above the car's edge, over a wet tip: the root gives back 21 µJ of its motion, and the
+// counts of Touch stir the coupling. A tank that began each contact with 30 µJ besides gave back 1.2 µJ.
+TEST(Trial, AHandThatStopsOverAWetTipGetsNothingBack) {
+    const TrialModel f = load_trial_model("edge");
+    const brush::Tuft tuft = brush::make_tuft(brush::load_preset("wolf-medium"));
+    const RandomHand hand(2376, tuft.preset);
+    const TrialReport r =
+        run_trial(tuft, *f.surface, hand_path(HandMotion::drag, f.place, tuft.preset, hand.path), hand.options);
+    EXPECT_GE(r.least_energy, -kMicrojoule);
+    EXPECT_GT(r.contacts, 1u);
+}
+
 // Hair that bursts off the bowl leaves the spring of the coupling stretched by what was faded: a contact's end once
 // filled the tank with it, and gave back 2 mJ in steps of 2 N.
 TEST(Trial, ASpringThatTheFadeStretchedGivesNothingBack) {
