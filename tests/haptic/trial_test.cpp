@@ -155,15 +155,19 @@ struct RandomHand {
     }
 };
 
+/// Random hand `number` with wolf-medium on Touch, at the car's edge.
+TrialReport run_random_hand(std::uint64_t number, HandMotion motion, const TrialModel& edge) {
+    const brush::Tuft tuft = brush::make_tuft(brush::load_preset("wolf-medium"));
+    const RandomHand hand(number, tuft.preset);
+    return run_trial(tuft, *edge.surface, hand_path(motion, edge.place, tuft.preset, hand.path), hand.options);
+}
+
 // The root moves at 0.9 m/s when the hair comes to the shut line: what the hand gave in the period before is in its
 // motion already, and once stayed in the tank besides.
 TEST(Trial, WhatCameInBeforeAContactGivesNothingBack) {
     TrialModel f = load_trial_model("edge");
     f.place = place_at_edge(*f.surface, "shut line", true);
-    const brush::Tuft tuft = brush::make_tuft(brush::load_preset("wolf-medium"));
-    const RandomHand hand(120, tuft.preset);
-    const TrialReport r =
-        run_trial(tuft, *f.surface, hand_path(HandMotion::taps, f.place, tuft.preset, hand.path), hand.options);
+    const TrialReport r = run_random_hand(120, HandMotion::taps, f);
     EXPECT_GE(r.least_energy, -kMicrojoule);
     EXPECT_GT(r.contacts, 2u);
 }
@@ -171,11 +175,7 @@ TEST(Trial, WhatCameInBeforeAContactGivesNothingBack) {
 // A hand that comes to rest just above the car's edge, over a wet tip: the root gives back 21 µJ of its motion, and the
 // counts of Touch stir the coupling. A tank that began each contact with 30 µJ besides gave back 1.2 µJ.
 TEST(Trial, AHandThatStopsOverAWetTipGetsNothingBack) {
-    const TrialModel f = load_trial_model("edge");
-    const brush::Tuft tuft = brush::make_tuft(brush::load_preset("wolf-medium"));
-    const RandomHand hand(2376, tuft.preset);
-    const TrialReport r =
-        run_trial(tuft, *f.surface, hand_path(HandMotion::drag, f.place, tuft.preset, hand.path), hand.options);
+    const TrialReport r = run_random_hand(2376, HandMotion::drag, load_trial_model("edge"));
     EXPECT_GE(r.least_energy, -kMicrojoule);
     EXPECT_GT(r.contacts, 1u);
 }
