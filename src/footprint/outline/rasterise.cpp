@@ -72,26 +72,35 @@ struct Border {
 
     /// Coverage of all cells; outlines of one sense cover positively, all together at most once. `out`: zeros.
     void resolve(int width, std::uint8_t* out) const {
-        // Row j holds the names from start[j] to start[j + 1], once they are put there.
-        Recycled<std::uint32_t> start(static_cast<std::size_t>(height) + 2, 0);
-        for (const BorderCell& c : cells) ++start[c.row + 2];
-        for (int j = 0; j < height; ++j) start[j + 2] += start[j + 1];
-        Recycled<Name> names(cells.size());
-        for (std::size_t k = 0; k < cells.size(); ++k)
-            names[start[cells[k].row + 1]++] = static_cast<Name>(cells[k].column) << 32 | k;
+        // By column, then by row: cells of a column stay in the order in which they were drawn.
+        const std::size_t n = cells.size();
+        Recycled<std::uint32_t> by_column(n), by_row(n), start(static_cast<std::size_t>(std::max(width, height)) + 2);
+        const auto put_in_order = [&](auto&& key_of, int keys, auto&& cell_at, Recycled<std::uint32_t>& order) {
+            std::fill_n(start.begin(), keys + 2, 0u);
+            for (const BorderCell& c : cells) ++start[key_of(c) + 2];
+            for (int k = 0; k < keys; ++k) start[k + 2] += start[k + 1];
+            for (std::size_t k = 0; k < n; ++k) {
+                const std::uint32_t cell = cell_at(k);
+                order[start[key_of(cells[cell]) + 1]++] = cell;
+            }
+        };
+        put_in_order([](const BorderCell& c) { return c.column; }, width,
+                     [](std::size_t k) { return static_cast<std::uint32_t>(k); }, by_column);
+        put_in_order([](const BorderCell& c) { return c.row; }, height, [&](std::size_t k) { return by_column[k]; },
+                     by_row);
+        // Row j holds the cells from start[j] to start[j + 1].
         for (int j = 0; j < height; ++j) {
-            Name *first = names.data() + start[j], *last = names.data() + start[j + 1];
-            sort(first, last);
+            const std::uint32_t *next = by_row.data() + start[j], *const last = by_row.data() + start[j + 1];
             std::uint8_t* line = out + static_cast<std::size_t>(j) * width;
             float height_before = 0;
             int column = 0;
-            while (first < last) {
-                const int at = static_cast<int>(*first >> 32);
+            while (next < last) {
+                const int at = cells[*next].column;
                 if (const std::uint8_t inside = level(height_before); inside != 0 && column < at)
                     std::memset(line + column, inside, static_cast<std::size_t>(at - column));
                 float area = height_before;
-                for (; first < last && static_cast<int>(*first >> 32) == at; ++first) {
-                    const BorderCell& cell = cells[*first & 0xffffffffu];
+                for (; next < last && cells[*next].column == at; ++next) {
+                    const BorderCell& cell = cells[*next];
                     area += cell.area;
                     height_before += cell.height;
                 }
@@ -99,19 +108,6 @@ struct Border {
                 column = at + 1;
             }
             // What is left of the sum beyond the last border is rounding.
-        }
-    }
-
-    /// Column of a cell, and its number below it: in this order the cells of a column are as they were drawn.
-    using Name = std::uint64_t;
-
-    /// By insertion: a row has few, and most lie in order.
-    static void sort(Name* first, Name* last) {
-        for (Name* k = first; k < last; ++k) {
-            const Name name = *k;
-            Name* to = k;
-            for (; to > first && to[-1] > name; --to) *to = to[-1];
-            *to = name;
         }
     }
 
