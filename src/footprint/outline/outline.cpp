@@ -75,31 +75,53 @@ void add_shadow(const Cut& of, Recycled<Vec2>& corners) {
     if (level < 1) corners.push_back(cut.at(to.x, to.y));
 }
 
+/// A place in a strip's section, and where it lies between the strip's edges, see Cut::bent.
+struct StripPlace {
+    Vec2 at{0};
+    double s = 0, bow = 0;
+};
+
+/// Corners of a strip in order; with `pieces` > 1 its broad sides in as many pieces.
+Recycled<StripPlace> strip_places(std::span<const Vec2> strip, int pieces) {
+    Recycled<StripPlace> places;
+    places.reserve(strip.size() + 2 * static_cast<std::size_t>(pieces));
+    const auto add = [&](const Vec2& at) {
+        const double s = std::clamp(at.x / Cut::kStripChord, -1.0, 1.0);
+        places.push_back({at, s, 1 - s * s});
+    };
+    for (std::size_t k = 0; k < strip.size(); ++k) {
+        const Vec2 &c = strip[k], &next = strip[k + 1 < strip.size() ? k + 1 : 0];
+        const int n = std::abs(next.x - c.x) > 0.5 * Trail::kStripChord ? pieces : 1;
+        add(c);
+        for (int i = 1; i < n; ++i) add(glm::mix(c, next, double(i) / n));
+    }
+    return places;
+}
+
 /// The same of a strip: its corners at the scale at which it meets the surface when the ellipse does, cut by it.
-void add_strip_shadow(const Cut& cut, std::span<const Vec2> strip, Recycled<Vec2>& corners) {
+/// `places`: of `strip`, in pieces where the cut is bent.
+void add_strip_shadow(const Cut& cut, std::span<const Vec2> strip, std::span<const StripPlace> places,
+                      Recycled<Vec2>& corners) {
     const Vec3 broad = cut.broad(), thick = cut.thick();
     double reach = 0;
     for (const Vec2& c : strip) reach = std::max(reach, -(c.x * broad.z + c.y * thick.z));
     const double half = cut.half_height(), z = half > 0 ? cut.z * reach / half : cut.z;
-    const auto height = [&](const Vec2& c) { return z + c.x * broad.z + c.y * thick.z; };
-    const auto point = [&](const Vec2& c) {
-        return cut.centre + cut.bent(c.x) + c.x * Vec2(broad) + c.y * Vec2(thick);
+    const bool bent = cut.is_bent();
+    const auto height = [&](const StripPlace& p) { return z + p.at.x * broad.z + p.at.y * thick.z; };
+    const auto point = [&](const StripPlace& p) {
+        const Vec2 middle = bent ? cut.centre + (p.s * cut.slant + p.bow * cut.bow) : cut.centre;
+        return middle + p.at.x * Vec2(broad) + p.at.y * Vec2(thick);
     };
     const std::size_t before = corners.size();
-    const int pieces = cut.is_bent() ? kBentPieces : 1;
-    Vec2 u = strip[0];
-    double p = height(u);
-    for (std::size_t k = 0; k < strip.size(); ++k) {
-        const Vec2 &c = strip[k], &next = strip[(k + 1) % strip.size()];
-        const int n = std::abs(next.x - c.x) > 0.5 * Trail::kStripChord ? pieces : 1;
-        for (int i = 1; i <= n; ++i) {
-            const Vec2 v = i < n ? glm::mix(c, next, double(i) / n) : next;
-            const double q = height(v);
-            if (p <= 0) corners.push_back(point(u));
-            if ((p <= 0) != (q <= 0)) corners.push_back(glm::mix(point(u), point(v), p / (p - q)));
-            u = v;
-            p = q;
-        }
+    const double first = height(places.front());
+    double p = first;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const bool closes = k + 1 == places.size();
+        const double q = closes ? first : height(places[k + 1]);
+        if (p <= 0) corners.push_back(point(places[k]));
+        if ((p <= 0) != (q <= 0))
+            corners.push_back(glm::mix(point(places[k]), point(places[closes ? 0 : k + 1]), p / (p - q)));
+        p = q;
     }
     if (corners.size() == before) corners.push_back(cut.centre);  // it only just touches
 }
@@ -164,11 +186,16 @@ Vec2 forward_direction(const Recycled<Cut>& cuts) {
 
 void Loops::add(std::span<const Cut> cuts, std::span<const Vec2> strip) {
     corners.reserve(corners.size() + cuts.size() * (strip.empty() ? kDirections + 2 : strip.size() + 2 * kBentPieces));
+    first.reserve(first.size() + cuts.size());
+    Recycled<StripPlace> straight, in_pieces;
     for (const Cut& cut : cuts) {
-        if (strip.empty())
+        if (strip.empty()) {
             add_shadow(cut, corners);
-        else
-            add_strip_shadow(cut, strip, corners);
+        } else {
+            Recycled<StripPlace>& places = cut.is_bent() ? in_pieces : straight;
+            if (places.empty()) places = strip_places(strip, cut.is_bent() ? kBentPieces : 1);
+            add_strip_shadow(cut, strip, places, corners);
+        }
         first.push_back(corners.size());
     }
 }

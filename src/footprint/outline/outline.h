@@ -54,7 +54,9 @@ struct CurveSpan {
     CurveSpan(const Outline& outline, std::size_t k) {
         const Recycled<Vec2>& c = outline.control;
         const std::size_t n = c.size();
-        c0 = c[(k + n - 1) % n], c1 = c[k], c2 = c[(k + 1) % n], c3 = c[(k + 2) % n];
+        const auto wrapped = [n](std::size_t i) { return i < n ? i : i - n; };  // sooner than a remainder
+        const std::size_t next = wrapped(k + 1);
+        c0 = c[k > 0 ? k - 1 : n - 1], c1 = c[k], c2 = c[next], c3 = c[wrapped(next + 1)];
     }
     /// The point of the uniform cubic B-spline at the parameter f, 0–1.
     Vec2 at(double f) const {

@@ -131,7 +131,7 @@ Polygon points_of(const Outline& outline, const Vec2& direction, const Vec2& ste
 double mean_width(const Polygon& curve) {
     double area = 0, length = 0;
     for (std::size_t k = 0; k < curve.size(); ++k) {
-        const Vec2 &p = curve[k], &q = curve[(k + 1) % curve.size()];
+        const Vec2 &p = curve[k], &q = curve[k + 1 < curve.size() ? k + 1 : 0];
         area += 0.5 * (p.x * q.y - p.y * q.x);
         length += glm::length(q - p);
     }
@@ -139,14 +139,16 @@ double mean_width(const Polygon& curve) {
 }
 
 void roughen(Polygon& curve, Displacement& displacement, double scale) {
-    const std::size_t n = curve.size();
-    const Polygon smooth = curve;
-    for (std::size_t k = 0; k < n; ++k) {
-        const Vec2 run = smooth[(k + 1) % n] - smooth[(k + n - 1) % n];
+    if (curve.empty()) return;
+    const Vec2 first = curve.front();
+    Vec2 before = curve.back();
+    for (std::size_t k = 0; k < curve.size(); ++k) {
+        const Vec2 smooth = curve[k], run = (k + 1 < curve.size() ? curve[k + 1] : first) - before;
+        before = smooth;
         const double length = glm::length(run);
         if (!(length > 1e-12)) continue;
         const Vec2 outward = Vec2{run.y, -run.x} / length;
-        curve[k] += scale * displacement.at(smooth[k], outward) * outward;
+        curve[k] += scale * displacement.at(smooth, outward) * outward;
     }
 }
 
