@@ -88,12 +88,11 @@ Recycled<Joint> joints_of(std::span<const Trail* const> trails) {
 }
 
 /// Adds the skin between two sections side by side; with `ends` also before and behind them.
-void add_bridge(std::span<const Vec2> p, std::span<const Vec2> q, bool ends, Envelope& envelope) {
-    const auto [p_low, p_high] = std::minmax_element(p.begin(), p.end(), by_y);
-    const auto [q_low, q_high] = std::minmax_element(q.begin(), q.end(), by_y);
-    envelope.add(*p_low, *q_low);
-    envelope.add(*p_high, *q_high);
+void add_bridge(const Loops& loops, std::size_t k, std::size_t l, bool ends, Envelope& envelope) {
+    envelope.add(loops.extent[k].low, loops.extent[l].low);
+    envelope.add(loops.extent[k].high, loops.extent[l].high);
     if (!ends) return;
+    const std::span<const Vec2> p = loops[k], q = loops[l];
     const auto [p_rear, p_front] = std::minmax_element(p.begin(), p.end(), by_x);
     const auto [q_rear, q_front] = std::minmax_element(q.begin(), q.end(), by_x);
     envelope.add(*p_rear, *q_rear);
@@ -114,13 +113,14 @@ Outline outline_of(const Joint& joint, int points) {
     Loops loops;
     for (std::size_t k = 0; k < sides; ++k) loops.add(joint.side[k], strip_of(*joint.trail[k]));
     patch.to_patch(loops.corners);
+    loops.find_extents();
     const auto [rear, front] = std::minmax_element(loops.corners.begin(), loops.corners.end(), by_x);
     Envelope envelope(rear->x, front->x, points);
     for (std::size_t k = 0; k < sides; ++k) add_loops(loops, k * n, (k + 1) * n, envelope);
     for (std::size_t k = 0; k < sides; ++k)
         for (std::size_t l = k + 1; l < sides; ++l)
             for (std::size_t i = 0; i < n; ++i)
-                add_bridge(loops[k * n + i], loops[l * n + i], discs || i == 0 || i + 1 == n, envelope);
+                add_bridge(loops, k * n + i, l * n + i, discs || i == 0 || i + 1 == n, envelope);
     return closed_outline(envelope, patch, {*front, *rear}, points, joint.trail.front()->strip);
 }
 
@@ -177,13 +177,14 @@ Outline swept_outline(std::span<const Trail* const> now, std::span<const Trail* 
     }
     const PatchFrame patch{middle, unit_or(way, forward_direction(now.front()->cuts))};
     patch.to_patch(loops.corners);
+    loops.find_extents();
     const auto [rear, front] = std::minmax_element(loops.corners.begin(), loops.corners.end(), by_x);
     Envelope envelope(rear->x, front->x, points);
     const std::size_t n = kSweptSamples, sides = 2 * now.size();
     for (std::size_t k = 0; k < sides; ++k) add_loops(loops, k * n, (k + 1) * n, envelope);
     for (std::size_t k = 0; k < sides; ++k)
         for (std::size_t l = k + 1; l < sides; ++l)
-            for (std::size_t i = 0; i < n; ++i) add_bridge(loops[k * n + i], loops[l * n + i], true, envelope);
+            for (std::size_t i = 0; i < n; ++i) add_bridge(loops, k * n + i, l * n + i, true, envelope);
     return closed_outline(envelope, patch, {*front, *rear}, points, now.front()->strip);
 }
 

@@ -107,23 +107,26 @@ void add_strip_shadow(const Cut& cut, std::span<const Vec2> strip, std::span<con
     for (const Vec2& c : strip) reach = std::max(reach, -(c.x * broad.z + c.y * thick.z));
     const double half = cut.half_height(), z = half > 0 ? cut.z * reach / half : cut.z;
     const bool bent = cut.is_bent();
+    const Vec2 across(broad), through(thick), centre = cut.centre, slant = cut.slant, bow = cut.bow;
     const auto height = [&](const StripPlace& p) { return z + p.at.x * broad.z + p.at.y * thick.z; };
     const auto point = [&](const StripPlace& p) {
-        const Vec2 middle = bent ? cut.centre + (p.s * cut.slant + p.bow * cut.bow) : cut.centre;
-        return middle + p.at.x * Vec2(broad) + p.at.y * Vec2(thick);
+        const Vec2 middle = bent ? centre + (p.s * slant + p.bow * bow) : centre;
+        return middle + p.at.x * across + p.at.y * through;
     };
-    const std::size_t before = corners.size();
-    const double first = height(places.front());
+    const std::size_t before = corners.size(), n = places.size();
+    corners.resize(before + 2 * n);  // as many as there can be
+    Vec2* to = corners.data() + before;
+    const double first = height(places[0]);
     double p = first;
-    for (std::size_t k = 0; k < places.size(); ++k) {
-        const bool closes = k + 1 == places.size();
-        const double q = closes ? first : height(places[k + 1]);
-        if (p <= 0) corners.push_back(point(places[k]));
-        if ((p <= 0) != (q <= 0))
-            corners.push_back(glm::mix(point(places[k]), point(places[closes ? 0 : k + 1]), p / (p - q)));
+    for (std::size_t k = 0; k < n; ++k) {
+        const StripPlace& next = places[k + 1 < n ? k + 1 : 0];
+        const double q = k + 1 < n ? height(next) : first;
+        if (p <= 0) *to++ = point(places[k]);
+        if ((p <= 0) != (q <= 0)) *to++ = glm::mix(point(places[k]), point(next), p / (p - q));
         p = q;
     }
-    if (corners.size() == before) corners.push_back(cut.centre);  // it only just touches
+    if (to == corners.data() + before) *to++ = centre;  // it only just touches
+    corners.resize(static_cast<std::size_t>(to - corners.data()));
 }
 
 /// Solves (c[k-1] + 4 c[k] + c[k+1]) / 6 = p[k], cyclic, by elimination with one bordering
@@ -200,19 +203,30 @@ void Loops::add(std::span<const Cut> cuts, std::span<const Vec2> strip) {
     }
 }
 
+void Loops::find_extents() {
+    extent.reserve(size());
+    for (std::size_t k = extent.size(); k < size(); ++k) {
+        const std::span<const Vec2> s = (*this)[k];
+        Vec2 least = s[0], most = s[0];
+        for (const Vec2& p : s) least = glm::min(least, p), most = glm::max(most, p);
+        std::size_t low = 0, high = s.size() - 1;  // the first of the lowest, the last of the highest
+        while (low + 1 < s.size() && s[low].y != least.y) ++low;
+        while (high > 0 && s[high].y != most.y) --high;
+        extent.push_back({s[low], s[high], least.x, most.x});
+    }
+}
+
 void add_loops(const Loops& loops, std::size_t begin, std::size_t end, Envelope& envelope) {
-    Vec2 low_before{0}, high_before{0};
     for (std::size_t k = begin; k < end; ++k) {
         const std::span<const Vec2> s = loops[k];
-        for (std::size_t i = 0; i + 1 < s.size(); ++i) envelope.add(s[i], s[i + 1]);
-        envelope.add(s.back(), s.front());
-        const auto [low, high] = std::minmax_element(s.begin(), s.end(), by_y);
-        if (k > begin) {
-            envelope.add(low_before, *low);
-            envelope.add(high_before, *high);
+        const LoopExtent& extent = loops.extent[k];
+        if (envelope.meets(extent.rear, extent.front)) {
+            for (std::size_t i = 0; i + 1 < s.size(); ++i) envelope.add(s[i], s[i + 1]);
+            envelope.add(s.back(), s.front());
         }
-        low_before = *low;
-        high_before = *high;
+        if (k == begin) continue;
+        envelope.add(loops.extent[k - 1].low, extent.low);
+        envelope.add(loops.extent[k - 1].high, extent.high);
     }
 }
 
@@ -244,6 +258,7 @@ Outline outline_of(const Trail& trail, int points) {
     Loops loops;
     loops.add(cuts, strip_of(trail));
     patch.to_patch(loops.corners);
+    loops.find_extents();
     Vec2 front{-1e9, 0}, rear{1e9, 0};
     for (const Vec2& q : loops.corners) {
         if (q.x > front.x) front = q;

@@ -12,13 +12,21 @@
 /// From the shadows of sections to an outline. Internal to the sources of `outline`.
 namespace tuft::footprint {
 
+/// Extreme corners of a loop.
+struct LoopExtent {
+    Vec2 low{0}, high{0};        ///< of least and of greatest y
+    double rear = 0, front = 0;  ///< least and greatest x
+};
+
 /// Shadows of sections on the surface, one loop of corners each.
 struct Loops {
     Recycled<Vec2> corners;
     Recycled<std::size_t> first{0};  ///< corner of each loop, and the end
+    Recycled<LoopExtent> extent;     ///< of each loop, after `find_extents`
 
     /// `strip`: corners of the hair's sections; empty: ellipses.
     void add(std::span<const Cut> cuts, std::span<const Vec2> strip);
+    void find_extents();
     std::size_t size() const { return first.size() - 1; }
     std::span<const Vec2> operator[](std::size_t k) const {
         return {corners.data() + first[k], first[k + 1] - first[k]};
@@ -47,8 +55,7 @@ class Envelope {
     void add(Vec2 p, Vec2 q) {
         if (p.x > q.x) std::swap(p, q);
         const int n = static_cast<int>(x_.size());
-        while (at_ > 0 && x_[at_ - 1] >= p.x) --at_;
-        while (at_ < n && x_[at_] < p.x) ++at_;
+        find(p.x);
         for (int j = at_; j < n && x_[j] <= q.x; ++j) {
             const double f = q.x > p.x ? (x_[j] - p.x) / (q.x - p.x) : 0;
             const double y = p.y + f * (q.y - p.y);
@@ -57,12 +64,24 @@ class Envelope {
         }
     }
 
+    /// Whether an abscissa lies in [lo, hi].
+    bool meets(double lo, double hi) {
+        find(lo);
+        return at_ < static_cast<int>(x_.size()) && x_[at_] <= hi;
+    }
+
     bool covered(int j) const { return top_[j] >= bottom_[j]; }
     Vec2 top(int j) const { return {x_[j], top_[j]}; }
     Vec2 bottom(int j) const { return {x_[j], bottom_[j]}; }
 
   private:
     static constexpr double kFar = 1e9;
+    /// at_ becomes the first abscissa from x on.
+    void find(double x) {
+        const int n = static_cast<int>(x_.size());
+        while (at_ > 0 && x_[at_ - 1] >= x) --at_;
+        while (at_ < n && x_[at_] < x) ++at_;
+    }
     Recycled<double> x_, top_, bottom_;
     int at_ = 0;
 };
@@ -90,7 +109,7 @@ std::span<const Vec2> strip_of(const Trail& trail);
 /// one that stands, the trace of its bending plane.
 Vec2 forward_direction(const Recycled<Cut>& cuts);
 
-/// Adds the loops of one trail, each with the skin to the next.
+/// Adds the loops of one trail, each with the skin to the next; after `find_extents`.
 void add_loops(const Loops& loops, std::size_t begin, std::size_t end, Envelope& envelope);
 
 /// The outline of an envelope. With `edges` its control points are its own: the spline through them would swing beyond
