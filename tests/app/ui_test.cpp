@@ -270,6 +270,53 @@ TEST(UiFont, GetsTheCharactersThatAreShownInEachLanguage) {
     ImGui::DestroyContext();
 }
 
+// Boxes of the triangles of one colour in what was drawn, glyphs or not.
+std::vector<ImVec4> boxes_drawn(const ImDrawData& data, ImU32 colour, bool glyphs) {
+    const ImVec2 white = ImGui::GetIO().Fonts->TexUvWhitePixel;
+    std::vector<ImVec4> boxes;
+    for (int l = 0; l < data.CmdListsCount; ++l) {
+        const ImDrawList& list = *data.CmdLists[l];
+        for (int i = 0; i + 2 < list.IdxBuffer.Size; i += 3) {
+            ImVec4 box(1e9f, 1e9f, -1e9f, -1e9f);
+            bool wanted = true;
+            for (int k = 0; k < 3; ++k) {
+                const ImDrawVert& v = list.VtxBuffer[list.IdxBuffer[i + k]];
+                wanted = wanted && v.col == colour && glyphs == (v.uv.x != white.x || v.uv.y != white.y);
+                box = {std::min(box.x, v.pos.x), std::min(box.y, v.pos.y), std::max(box.z, v.pos.x),
+                       std::max(box.w, v.pos.y)};
+            }
+            if (wanted) boxes.push_back(box);
+        }
+    }
+    return boxes;
+}
+
+TEST(Ui, TheGrabOfASliderLeavesItsTextFree) {
+    ImGui::CreateContext();
+    Ui ui;
+    ui.prepare({});
+    ImGuiIO& io = ImGui::GetIO();
+    io.DisplaySize = {800, 600};
+    io.IniFilename = nullptr;
+    for (int i = 0; i <= 50; ++i) {
+        double value = i / 50.0;
+        ImGui::NewFrame();
+        ImGui::SetNextWindowSize({400, 200});
+        ImGui::Begin("Panel", nullptr, ImGuiWindowFlags_NoTitleBar);
+        ui.named_slider("Strength", value, {0, 1, "%.2f"}, nullptr, 300);
+        const ImU32 blue = ImGui::GetColorU32(ImGuiCol_SliderGrab), ink = ImGui::GetColorU32(ImGuiCol_Text);
+        ImGui::End();
+        ImGui::Render();
+        const auto grab = boxes_drawn(*ImGui::GetDrawData(), blue, false);
+        const auto text = boxes_drawn(*ImGui::GetDrawData(), ink, true);
+        ASSERT_FALSE(grab.empty()) << value;
+        ASSERT_FALSE(text.empty());
+        for (const ImVec4& a : grab)
+            for (const ImVec4& b : text) ASSERT_FALSE(a.x < b.z && b.x < a.z && a.y < b.w && b.y < a.w) << value;
+    }
+    ImGui::DestroyContext();
+}
+
 std::string chinese(const Message& message) {
     return message.text([](const char* english) { return chinese_text(english); });
 }

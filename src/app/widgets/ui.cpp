@@ -336,13 +336,13 @@ void draw_arrow(ImDrawList* draw, ImVec2 c, float r, bool open, unsigned colour)
                                 ImVec2(c.x - 0.6f * r, c.y + r), colour);
 }
 
-// What lies behind a slider: filled from zero, or from its lower end, to the value, so that the number on it can be
-// read wherever the value stands. ImGui draws the number and, as narrow as it is here, the grab.
-void draw_slider_ground(float lo, float hi, float value, float grab, float width) {
+// What lies behind the text of a slider: filled from zero, or from its lower end, to the value, where the grab stands.
+// The grab leaves the text free, so that it can be read wherever the value stands.
+void draw_slider_ground(float lo, float hi, float value, const char* text, float width) {
     constexpr float pad = 2;  // pixels that ImGui leaves beside the grab
+    const float grab = ImGui::GetStyle().GrabMinSize, round = ImGui::GetStyle().FrameRounding;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const ImVec2 end(at.x + width, at.y + ImGui::GetFrameHeight());
-    const float round = ImGui::GetStyle().FrameRounding;
     const auto place = [&](float v) {
         return at.x + pad + 0.5f * grab +
                std::clamp((v - lo) / (hi - lo), 0.0f, 1.0f) * (end.x - at.x - 2 * pad - grab);
@@ -354,6 +354,15 @@ void draw_slider_ground(float lo, float hi, float value, float grab, float width
     const float zero = lo < 0 ? place(0) : at.x, now = place(value);
     draw->AddRectFilled({std::min(zero, now), at.y}, {std::max(zero, now), end.y}, ImGui::GetColorU32(ImGuiCol_Header),
                         lo < 0 ? 0 : round);
+    const unsigned colour = ImGui::GetColorU32(ImGuiCol_SliderGrab);
+    const auto draw_grab = [&](float top, float bottom) {
+        draw->AddRectFilled({now - 0.5f * grab, top}, {now + 0.5f * grab, bottom}, colour);
+    };
+    const ImVec2 size = ImGui::CalcTextSize(text, nullptr, true);
+    const float middle = 0.5f * (at.x + end.x), above = 0.5f * (end.y - at.y - size.y);
+    if (std::abs(now - middle) > 0.5f * (size.x + grab) + pad) return draw_grab(at.y + pad, end.y - pad);
+    draw_grab(at.y, at.y + above);
+    draw_grab(end.y - above, end.y);
 }
 
 }  // namespace
@@ -364,12 +373,15 @@ bool Ui::bare_slider(const char* label, double& value, const SliderRange& range,
     ImGui::SetNextItemWidth(width);
     const std::string name = std::string("##") + label;
     const auto least = static_cast<float>(lo / unit), most = static_cast<float>(hi / unit);
-    draw_slider_ground(least, most, v, px(4), width);
+    char text[256];
+    std::snprintf(text, sizeof text, format, static_cast<double>(v));
     ImGui::PushStyleVar(ImGuiStyleVar_GrabMinSize, px(4));
-    for (const int ground : {ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive})
-        ImGui::PushStyleColor(ground, IM_COL32_BLACK_TRANS);
+    draw_slider_ground(least, most, v, text, width);
+    const ImGuiCol drawn[] = {ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive, ImGuiCol_SliderGrab,
+                              ImGuiCol_SliderGrabActive};
+    for (const ImGuiCol colour : drawn) ImGui::PushStyleColor(colour, IM_COL32_BLACK_TRANS);
     const bool changed = ImGui::SliderFloat(name.c_str(), &v, least, most, format, ImGuiSliderFlags_AlwaysClamp);
-    ImGui::PopStyleColor(3);
+    ImGui::PopStyleColor(static_cast<int>(std::size(drawn)));
     ImGui::PopStyleVar();
     mark(label);
     if (changed) value = v * unit;
