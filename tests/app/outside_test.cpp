@@ -8,10 +8,13 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <regex>
 #include <sstream>
 #include <thread>
 
+#include "app/document/writing.h"
 #include "app/paint/paint_thread.h"
+#include "ink/colour/pigments.h"
 #include "io/project/project.h"
 #include "io/project/restore.h"
 #include "models.h"
@@ -28,16 +31,18 @@ constexpr double kLongest = 60;  // seconds until something that must happen is 
 
 class OutsideChangesTest : public testing::Test {
   protected:
-    void SetUp() override {
+    void SetUp() override { open("sheet.ply"); }
+    void open(const std::string& model) {
+        model_ = model;
         folder_ = fs::path(testing::TempDir()) / ("tuft_outside_" + std::to_string(getpid()));
         fs::create_directories(folder_ / "place");
         path_ = folder_ / "place" / "work.tuft";
         PaintWork work;
-        work.model = std::make_unique<stroke::Model>(test::shipped_model("sheet.ply", 256));
+        work.model = std::make_unique<stroke::Model>(test::shipped_model(model_, 256));
         work.document = std::make_unique<stroke::Document>(*work.model);
         work.texture = std::make_unique<Texture>(*work.document, ProgressFn{});
         work.spare = folder_ / "spare.tuft";
-        ASSERT_TRUE(work.autosave.start(path_, "sheet.ply", {}, *work.document).empty());
+        ASSERT_TRUE(work.autosave.start(path_, model_, {}, *work.document).empty());
         painter_ = std::make_unique<PaintThread>(std::move(work));
     }
     void TearDown() override {
@@ -45,9 +50,9 @@ class OutsideChangesTest : public testing::Test {
         fs::remove_all(folder_);
     }
 
-    void stroke(double y, std::uint32_t layer = stroke::kFirstLayer) {
+    void stroke(double y, const std::string& ink = "carbon") {
         const brush::Preset preset = brush::load_preset("wolf-small");
-        painter_->post(BeginStroke{.brush = "wolf-small", .ink = "carbon", .layer = layer});
+        painter_->post(BeginStroke{.brush = "wolf-small", .ink = ink});
         painter_->post(ExtendStroke{test::poses_above(painter_->model(), preset, 0.02, y)});
         painter_->post(EndStroke{});
         rest();
@@ -75,7 +80,7 @@ class OutsideChangesTest : public testing::Test {
     void expect_file(std::size_t strokes, const fs::path& file) {
         const io::Project project = io::Project::open(file, {.access = io::Access::read});
         ASSERT_EQ(project.n_strokes(), strokes);
-        const stroke::Model model = test::shipped_model("sheet.ply", 256);
+        const stroke::Model model = test::shipped_model(model_, 256);
         stroke::Document opened(model), replayed(model);
         for (stroke::Document* p : {&opened, &replayed}) io::use_presets(project, *p);
         io::restore_strokes(project, opened, {});
@@ -84,6 +89,7 @@ class OutsideChangesTest : public testing::Test {
     }
 
     fs::path folder_, path_;
+    std::string model_;
     std::unique_ptr<PaintThread> painter_;
     std::vector<StrokeLine> lines_;
     std::string messages_;
@@ -127,6 +133,32 @@ TEST_F(OutsideChangesTest, AStrokeThatMeetsAChangeIsPaintedAfterIt) {
     EXPECT_EQ(lines_.size(), 6u);
     painter_.reset();
     expect_file(6, path_);
+}
+
+class OutsideChangesOfASphere : public OutsideChangesTest {
+    void SetUp() override { open("sphere.ply"); }
+};
+
+// The other program mixed a colour by its own pigments, here as cinnabar. A search would find another mix.
+TEST_F(OutsideChangesOfASphere, AnInkOfTheOtherProgramStaysWhereADrawingInItIsRefused) {
+    const std::string colour = "#1b6f5a";
+    const std::string toml = std::regex_replace(ink::ink_toml(ink::load_ink("cinnabar")), std::regex("'"), "''");
+    stroke(0);
+    as_old_program("BEGIN; INSERT INTO presets VALUES('ink', '" + colour + "', '" + toml + "'); " + kCopyFirst +
+                   "; UPDATE strokes SET ink = '" + colour + "' WHERE label = 'theirs'; COMMIT");
+    ASSERT_TRUE(comes([&] { return lines_.size() == 2 && last_.status.file.unsaved == 0; }));
+    // A line 1.4 m long by a tuft that is longer than the sphere.
+    const std::string line = (folder_ / "line.inkml").string();
+    std::ofstream(line) << "<ink xmlns='http://www.w3.org/2003/InkML'><trace>0 0, 7 0, 14 0</trace></ink>";
+    Writing writing = read_writing(line);
+    writing.scale = 100;
+    const stroke::Placement place = stroke::placement_seen({0, 0, 0.05}, {0, 0, 1}, {1, 0, 0}, 0);
+    painter_->post(PaintDrawing{placed_writing(writing, place, {"wolf-large*4", colour}), {}});
+    rest();
+    EXPECT_NE(messages_.find("does not suit the drawing"), std::string::npos) << messages_;
+    stroke(0.01, colour);
+    painter_.reset();
+    expect_file(3, path_);
 }
 
 TEST_F(OutsideChangesTest, AnUndoThatMeetsAChangeTakesBackWhatIsItsOwn) {
