@@ -10,7 +10,9 @@
 #include "core/files/files.h"
 #include "core/text/units.h"
 #include "io/export/export.h"
+#include "pictures/picture_look.h"
 #include "render/brush/brush_canvas.h"
+#include "render/picture/glass.h"
 
 namespace fs = std::filesystem;
 
@@ -24,6 +26,8 @@ constexpr double kLeastView = 0.03;         // metres
 constexpr double kSteepest = 80;            // degrees of elevation
 constexpr double kFromAbove = 58;           // degrees of elevation, into a bowl
 constexpr double kHardlyMore = 1.05;        // what another view of all pieces must show over the one before
+constexpr int kEdgeSamples = 8;             // rays per pixel on edges: half of a product picture's
+constexpr int kLightStep = 4;               // pixels between samples of light
 constexpr double kLevelArrow = 0.4;         // rise of an arrow over its length below which it points to the back
 
 /// A piece on the model.
@@ -170,24 +174,55 @@ View view_of_all(const std::vector<PlacedPiece>& pieces, const stroke::Model& mo
 
 const Vec3 kOwn = render::linear_colour(210, 0, 140), kOther = render::linear_colour(90, 110, 140);
 
-void write_guide_picture(const fs::path& path, const GuideRequest& request, const std::vector<PlacedPiece>& pieces,
-                         int number, const View& view, Console& console) {
-    const stroke::Model& model = request.project.model;
-    render::Image image =
-        draw_picture({.model = model, .painting = &request.painting, .view = view, .sketch = true}, console);
-    const render::Camera camera = camera_of(view, *model.mesh);
-    PictureOverlay overlay(image, camera, *model.query);
-    for (const bool own : {false, true})
-        for (const PlacedPiece& piece : pieces) {
-            if ((number == 0 || piece.number == number) != own) continue;
-            const Vec3 colour = own ? kOwn : kOther;
-            for (const SurfacePath& line : piece.outline) overlay.draw(line, own ? 2.5 : 1.5, colour);
-            overlay.draw_arrow(piece.arrow, own ? 3 : 1.5, colour);
-            overlay.draw_number(piece.number, piece.centre, piece.normal, own && number > 0 ? 30 : 18, colour);
-        }
-    image.rgb = overlay.rgb();
-    write_picture(path, image);
-}
+/// Draws the pictures of a guide, with one composition of the paint and one solution of the light for all.
+class GuidePictures {
+  public:
+    GuidePictures(const GuideRequest& request, const std::vector<PlacedPiece>& pieces, const View& first,
+                  Console& console)
+        : model_(request.project.model),
+          pieces_(pieces),
+          surface_(request.painting.parts().surface()),
+          view_(picture_view(first, *model_.mesh)),
+          look_(pictures::make_look(model_, &request.painting, "", false)),
+          series_(*model_.mesh, *surface_, look_.appearance, pictures::glass_of(look_, request.painting),
+                  series_options(first, console), render::PictureSeries::Length::moving) {}
+
+    /// `number`: of the piece that is shown; 0: all.
+    void write(const fs::path& path, int number, const View& view) {
+        const render::View next = picture_view(view, *model_.mesh);
+        if (!(next == view_)) series_.look_from(view_ = next);
+        render::Image image = series_.draw(look_.appearance, look_.transmission.texels);
+        PictureOverlay overlay(image, series_.camera(), *model_.query);
+        for (const bool own : {false, true})
+            for (const PlacedPiece& piece : pieces_)
+                if ((number == 0 || piece.number == number) == own) draw_piece(piece, own, number > 0, overlay);
+        image.rgb = overlay.rgb();
+        write_picture(path, image);
+    }
+
+  private:
+    render::PictureOptions series_options(const View& first, Console& console) const {
+        render::PictureOptions options = picture_options(first, model_);
+        options.edge_samples = kEdgeSamples;
+        options.light_step = kLightStep;
+        options.progress = console.progress();
+        return options;
+    }
+
+    static void draw_piece(const PlacedPiece& piece, bool own, bool alone, PictureOverlay& overlay) {
+        const Vec3 colour = own ? kOwn : kOther;
+        for (const SurfacePath& line : piece.outline) overlay.draw(line, own ? 2.5 : 1.5, colour);
+        overlay.draw_arrow(piece.arrow, own ? 3 : 1.5, colour);
+        overlay.draw_number(piece.number, piece.centre, piece.normal, own && alone ? 30 : 18, colour);
+    }
+
+    const stroke::Model& model_;
+    const std::vector<PlacedPiece>& pieces_;
+    std::shared_ptr<const mesh::SurfaceQuery> surface_;
+    render::View view_;  // of the series
+    pictures::PictureLook look_;
+    render::GlassSeries series_;
+};
 
 std::string lines_text(const GuideRequest& request, const std::vector<PlacedPiece>& pieces) {
     const FileFrame& frame = request.project.frame;
@@ -229,11 +264,12 @@ std::vector<fs::path> write_placing_guide(const fs::path& folder, const GuideReq
         write_file(beside / "lines.obj", text.data(), text.size());
         files.push_back(folder / "lines.obj");
         const View all = view_of_all(pieces, request.project.model);
-        write_guide_picture(beside / "overview.png", request, pieces, 0, all, console);
+        GuidePictures pictures(request, pieces, all, console);
+        pictures.write(beside / "overview.png", 0, all);
         files.push_back(folder / "overview.png");
         for (const PlacedPiece& piece : pieces) {
             const std::string name = fmt::format("piece-{:02}.png", piece.number);
-            write_guide_picture(beside / name, request, pieces, piece.number, view_of(piece, mesh), console);
+            pictures.write(beside / name, piece.number, view_of(piece, mesh));
             files.push_back(folder / name);
         }
     });

@@ -288,11 +288,10 @@ render::PictureOptions picture_options(const View& v, const stroke::Model& model
 }
 
 render::Image draw_picture(const PictureRequest& request, Console& console) {
-    const auto& [model, painting, v, material, frame, count, sketch] = request;
+    const auto& [model, painting, v, material, frame, count] = request;
     const pictures::PictureLook look = pictures::make_look(model, painting, material, v.raking);
     render::PictureOptions options = picture_options(v, model);
     options.progress = console.progress();
-    if (sketch) options.edge_samples = 8, options.light_samples = 8;
     if (count > 1) options = render::turntable_frame(options, frame, count);
     if (!painting) return render::render_picture(*model.mesh, *model.query, look.appearance, options);
     return render::render_with_glass(*model.mesh, *painting->parts().surface(), look.appearance,

@@ -85,7 +85,6 @@ struct PictureRequest {
     const View& view;
     std::string material = {};                     ///< of the bare surface; empty: the painting's, else porcelain
     int turntable_frame = 0, turntable_count = 1;  ///< the view is rotated by frame / count of a revolution
-    bool sketch = false;                           ///< few rays: says where things are, not how light falls on them
 };
 /// Draws a painted or a bare model.
 render::Image draw_picture(const PictureRequest& request, Console& console);
