@@ -193,6 +193,11 @@ FlatPanel finished(const ChartMesh& chart, const std::vector<Reference>& referen
     return panel;
 }
 
+std::vector<Vec2> times(std::vector<Vec2> flat, double scale) {
+    for (Vec2& p : flat) p *= scale;
+    return flat;
+}
+
 }  // namespace
 
 std::vector<Stretch> measure_stretch(const ChartMesh& chart, std::span<const Vec2> flat) {
@@ -221,16 +226,27 @@ FlatPanel lay_flat(const ChartMesh& chart, double limit) {
     options.abandon_energy = 2 * most;
     flat = atlas::flatten(chart, options);
     if (flat.empty()) return {};
-    Stretch range = range_of(references, chart, flat);
-    if (range.strain() > limit && std::isfinite(range.most)) {
-        // The same strain at both ends: (scale σ_max − 1) = (1 − scale σ_min).
-        const double scale = 0.5 * (range.most + range.least);
-        for (Vec2& p : flat) p *= scale;
-        range = range_of(references, chart, flat);
+    const Stretch range = range_of(references, chart, flat);
+    if (range.strain() <= limit || !std::isfinite(range.most)) return finished(chart, references, std::move(flat));
+    // The same strain at both ends: (scale σ_max − 1) = (1 − scale σ_min).
+    const double balance = 0.5 * (range.most + range.least);
+    std::vector<Vec2> scaled = times(flat, balance);
+    FlatPanel panel = finished(chart, references, scaled);
+    if (panel.strain > limit) {
+        if (atlas::arap_energy(chart, flat) > most) return panel;
+        StrainLimiter(chart, references).run(scaled, limit);
+        panel = finished(chart, references, std::move(scaled));
+        if (!panel.within(limit)) return panel;
     }
-    if (range.strain() > limit && atlas::arap_energy(chart, flat) <= most)
-        StrainLimiter(chart, references).run(flat, limit);
-    return finished(chart, references, std::move(flat));
+    // The limit holds. Where it does at a size nearer to the true one too, most of the film is strained less.
+    const StrainLimiter limiter(chart, references);
+    for (const double part : {0.0, 0.5}) {
+        std::vector<Vec2> nearer = times(flat, 1 + part * (balance - 1));
+        limiter.run(nearer, limit);
+        FlatPanel other = finished(chart, references, std::move(nearer));
+        if (other.within(limit)) return other;
+    }
+    return panel;
 }
 
 }  // namespace tuft::decal
