@@ -21,6 +21,11 @@ constexpr double kLevel = 0.3;         // tangential part of "up" below which a 
 constexpr double kBetween = 0.002;     // metres, least distance of two pieces' prints
 constexpr double kLeastSide = 0.010;   // metres
 constexpr double kStrainPixel = 5e-4;  // metres, of strain maps
+constexpr double kFragment = 0.01;     // of the paint of the piece beyond the seam
+constexpr double kSpeck = 0.1;         // of `least_fragment`
+constexpr double kSpeckOfAll = 0.001;  // of all paint
+constexpr double kSeamStep = 5e-4;     // metres between the places of a seam that are looked at
+constexpr double kBesideSeam = 2e-5;   // metres
 
 /// Panels with what is printed round them.
 struct CutFilm {
@@ -103,7 +108,6 @@ std::vector<Piece> find_pieces(const CutFilm& cut, const PrintSource& source, co
         const Vec2 up = up_of(cut.panels[i].chart, cut.panels[i].flat);
         for (Outline& o : find_outlines(cut.film, cut.panels[i], surfaces[i], source.coverage, outline)) {
             Piece piece;
-            piece.number = static_cast<int>(pieces.size()) + 1;
             piece.surface = i;
             piece.film = std::move(o.film);
             piece.paint_area = o.paint_area;
@@ -113,6 +117,63 @@ std::vector<Piece> find_pieces(const CutFilm& cut, const PrintSource& source, co
         }
     }
     return pieces;
+}
+
+/// A panel's half-edge on its sheet; the panel lies on its left.
+std::array<Vec2, 2> edge_of(const Panel& panel, std::size_t h) {
+    return {panel.flat[panel.chart.faces[h / 3][h % 3]], panel.flat[panel.chart.faces[h / 3][(h % 3 + 1) % 3]]};
+}
+
+/// The point at part s of an edge, `kBesideSeam` to its left.
+Vec2 beside(const std::array<Vec2, 2>& edge, double s) {
+    const Vec2 along = edge[1] - edge[0];
+    const double length = glm::length(along);
+    return edge[0] + s * along + (length > 0 ? kBesideSeam / length : 0) * Vec2(-along.y, along.x);
+}
+
+/// Whether a piece ends at a seam with one of more than 1 / kFragment times its paint.
+bool continues_larger_piece(const CutFilm& cut, const std::vector<std::uint32_t>& twin, const Piece& piece,
+                            const std::vector<Piece>& pieces) {
+    const Panel& panel = cut.panels[piece.surface];
+    for (std::size_t h = 0; h < panel.is_seam.size(); ++h) {
+        if (!panel.is_seam[h]) continue;
+        const std::array<Vec2, 2> edge = edge_of(panel, h);
+        const std::uint32_t across = twin[3 * std::size_t{panel.chart.triangles[h / 3]} + h % 3];
+        const std::size_t other = cut.index.at(cut.film.label[across / 3]);
+        const std::vector<std::uint32_t>& triangles = cut.panels[other].chart.triangles;
+        const auto at = std::lower_bound(triangles.begin(), triangles.end(), across / 3) - triangles.begin();
+        const std::array<Vec2, 2> there = edge_of(cut.panels[other], 3 * static_cast<std::size_t>(at) + across % 3);
+        const int n = static_cast<int>(glm::length(edge[1] - edge[0]) / kSeamStep) + 1;
+        for (int i = 0; i < n; ++i) {
+            const double s = (i + 0.5) / n;
+            if (!contains(piece.film, beside(edge, s))) continue;
+            for (const Piece& p : pieces)
+                if (p.surface == other && piece.paint_area < kFragment * p.paint_area &&
+                    contains(p.film, beside(there, 1 - s)))
+                    return true;
+        }
+    }
+    return false;
+}
+
+/// Takes fragments and specks out of the pieces.
+LeftOut leave_out_fragments(const CutFilm& cut, double least, std::vector<Piece>& pieces) {
+    const std::vector<std::uint32_t> twin = atlas::twin_half_edges(cut.film.mesh);
+    double all = 0;
+    for (const Piece& piece : pieces) all += piece.paint_area;
+    std::vector<Piece> kept;
+    LeftOut left_out;
+    for (const Piece& piece : pieces) {
+        const bool speck = piece.paint_area < std::min(kSpeck * least, kSpeckOfAll * all);
+        if (speck || (piece.paint_area < least && continues_larger_piece(cut, twin, piece, pieces))) {
+            ++left_out.fragments;
+            left_out.paint_area += piece.paint_area;
+        } else {
+            kept.push_back(piece);
+        }
+    }
+    pieces = std::move(kept);
+    return left_out;
 }
 
 /// What a piece takes up on a page in one orientation: its print and its label.
@@ -249,6 +310,8 @@ Sheet make_sheet(const mesh::TriangleMesh& model, const PrintSource& source, con
     sheet.max_strain = options.max_strain;
     sheet.pieces = find_pieces(cut, source, options, sheet.surfaces);
     if (sheet.pieces.empty()) throw Error("nothing is painted: there is no film to cut");
+    sheet.left_out = leave_out_fragments(cut, options.least_fragment, sheet.pieces);
+    for (std::size_t i = 0; i < sheet.pieces.size(); ++i) sheet.pieces[i].number = static_cast<int>(i) + 1;
     const std::vector<Vec2> labels = place_pieces(sheet.pieces, options, sheet.pages);
     draw_pieces(cut, source, options, labels, sheet);
     return sheet;

@@ -53,6 +53,12 @@ struct Plate {
     double full = 1;                        ///< film units of a tint of 100 %
 };
 
+/// Paint that no piece holds.
+struct LeftOut {
+    std::size_t fragments = 0;
+    double paint_area = 0;  ///< m²
+};
+
 /// Pages of film, ready to be written.
 struct Sheet {
     std::vector<Page> pages;
@@ -60,22 +66,24 @@ struct Sheet {
     std::vector<PrintSurface> surfaces;
     std::vector<Plate> plates;  ///< of `PrintImage::plates`
     double max_strain = 0;      ///< limit
+    LeftOut left_out;
     /// ICC profile of the colours of `PrintImage::rgb`; empty: the writer's own of sRGB.
     std::vector<std::uint8_t> profile = {};
 };
 
 /// Options of `make_sheet`.
 struct SheetOptions {
-    double max_strain = 0.03;     ///< of the film
-    double bleed = 0.003;         ///< film beyond the paint, metres
-    double overlap = 0.001;       ///< of two panels, metres; the one with the lower number lies below
-    double join = 0.01;           ///< see `OutlineOptions`
-    Vec2 page{0.21, 0.297};       ///< metres; height 0: a roll
-    bool upright = false;         ///< all pieces with their arrow up the page, along the grain; else turned to fit
-    double pixel = 0.0254 / 300;  ///< metres
-    bool strain_map = false;      ///< appends a page of strain for each page of film
-    bool prints = true;           ///< makes pictures; else lines only
-    std::string title;            ///< in the foot of each page
+    double max_strain = 0.03;      ///< of the film
+    double bleed = 0.003;          ///< film beyond the paint, metres
+    double overlap = 0.001;        ///< of two panels, metres; the one with the lower number lies below
+    double join = 0.01;            ///< see `OutlineOptions`
+    double least_fragment = 1e-5;  ///< m² of paint; see `make_sheet`
+    Vec2 page{0.21, 0.297};        ///< metres; height 0: a roll
+    bool upright = false;          ///< all pieces with their arrow up the page, along the grain; else turned to fit
+    double pixel = 0.0254 / 300;   ///< metres
+    bool strain_map = false;       ///< appends a page of strain for each page of film
+    bool prints = true;            ///< makes pictures; else lines only
+    std::string title;             ///< in the foot of each page
     ProgressFn progress;
 };
 
@@ -84,6 +92,12 @@ inline constexpr double kPrintedBleed = 0.003;
 
 /// Returns the sheet of a model: panels by `cut_into_panels`, cut lines by `find_outlines`, nested by `nest`. The arrow
 /// of a piece points up the model (+z), or on level surfaces to its back (+y). Pieces are numbered panel by panel.
+///
+/// A cut leaves fragments where it crosses a motif twice. One that ends at a seam with a piece of at least 100 times
+/// its paint, and has less than `least_fragment`, is too small to be laid and not missed: it is left out, and so is a
+/// speck of less than a tenth of `least_fragment` and a thousandth of all paint anywhere. `Sheet::left_out` says how
+/// much.
+///
 /// Pages of film come first, then their strain maps. Throws `Error` where nothing is painted or a piece fits no page.
 /// The same bits for any number of threads.
 Sheet make_sheet(const mesh::TriangleMesh& model, const PrintSource& source, const SheetOptions& options);

@@ -135,6 +135,31 @@ TEST_F(SheetOfFormula, PanelsLapByTheOverlap) {
     EXPECT_GT(lap_lines, 10u);
 }
 
+// A tongue of one area reaches into a bay of the next, so a straight cut between them parts its tip from it.
+TEST_F(SheetOfFormula, LeavesOutWhatACutPartsFromALargePieceAndSaysHowMuch) {
+    const mesh::TriangleMesh model = test::cylinder_part(kRadius, 2, 0.03, 100, 30);
+    const auto interlocked = [](const Vec3& p) {
+        const double x = kRadius * std::atan2(p.y, p.x) / kMm, z = p.z / kMm;
+        if (z < 4 || z > 26) return false;
+        if (std::abs(z - 15) < 0.6 && x > -5 && x < 5) return true;  // tongue
+        return x > 5 || (x < -2 && (std::abs(z - 15) > 6 || x < -14));
+    };
+    SheetOptions options{.bleed = 1 * kMm, .join = 2 * kMm, .least_fragment = 0, .page = {0.11, 0.08}, .prints = false};
+    const Sheet all = sheet(model, interlocked, options);
+    ASSERT_EQ(all.pieces.size(), 3u);
+    EXPECT_EQ(all.left_out.fragments, 0u);
+    options.least_fragment = 10 * kMm * kMm;
+    const Sheet made = sheet(model, interlocked, options);
+    ASSERT_EQ(made.pieces.size(), 2u);
+    EXPECT_EQ(made.left_out.fragments, 1u);
+    EXPECT_GT(made.left_out.paint_area, 0);
+    double paint = made.left_out.paint_area, truth = 0;
+    for (const Piece& piece : made.pieces) paint += piece.paint_area;
+    for (const Piece& piece : all.pieces) truth += piece.paint_area;
+    EXPECT_NEAR(paint, truth, 1e-12 * truth);  // sums of the same numbers
+    for (std::size_t i = 0; i < made.pieces.size(); ++i) EXPECT_EQ(made.pieces[i].number, static_cast<int>(i) + 1);
+}
+
 // Dots 1 mm wide all over: beyond a cut line only the rest of those that it cuts is printed, nothing of the next ones.
 TEST_F(SheetOfFormula, BleedPrintsOnlyWhatIsCutThrough) {
     const mesh::TriangleMesh model = test::whole_cylinder(kRadius, 0.04, 240, 20);

@@ -14,8 +14,13 @@ void export_sheets(PaintContext& context, ExportSheets command) {
     for (const decal::Piece& piece : sheet.pieces) strain = std::max(strain, piece.strain);
     char percent[16];
     std::snprintf(percent, sizeof percent, "%.1f", 100 * strain);
-    context.outbox.report(Message("Pieces of film: {}, strained by {} % at most; {}", sheet.pieces.size(),
-                                  std::string(percent), written.front().string()));
+    if (sheet.left_out.fragments == 0)
+        context.outbox.report(Message("Pieces of film: {}, strained by {} % at most; {}", sheet.pieces.size(),
+                                      std::string(percent), written.front().string()));
+    else
+        context.outbox.report(Message("Pieces of film: {}, strained by {} % at most, without {} fragments; {}",
+                                      sheet.pieces.size(), std::string(percent), sheet.left_out.fragments,
+                                      written.front().string()));
     context.publisher.publish();
 }
 

@@ -396,10 +396,11 @@ struct Decals {
     std::string mask;                 ///< name; empty: all that is painted
     std::vector<std::string> layers;  ///< as in `View`
     Recolouring recolouring;
-    double max_strain = 0.03;  ///< up to which the film follows the surface
-    double bleed_mm = 3;       ///< film beyond the paint
-    double overlap_mm = 1;     ///< of two panels
-    double join_mm = 10;       ///< islands of paint nearer than this share a piece
+    double max_strain = 0.03;        ///< up to which the film follows the surface
+    double bleed_mm = 3;             ///< film beyond the paint
+    double overlap_mm = 1;           ///< of two panels
+    double join_mm = 10;             ///< islands of paint nearer than this share a piece
+    double least_fragment_mm2 = 10;  ///< of paint; smaller ones at a seam are left out
     PrintChoice print;
     Common common;
 };

@@ -92,6 +92,11 @@ CLI::App* add_decals(CLI::App& app, Decals& d) {
     add_length(s, "--overlap", d.overlap_mm, 0, "overlap of two panels (default: 1mm; wraps: 25mm)");
     add_length(s, "--join", d.join_mm, 0,
                "islands of paint nearer than this to each other share a piece (default: 10mm)");
+    s->add_option(
+         "--least-fragment", d.least_fragment_mm2,
+         "leave out what a cut parts from a piece with 100 times its paint, where it has less paint than this, "
+         "in mm2 (default: 10; 0: lay all)")
+        ->check(number_in(0, 1e6));
     s->add_option_function<std::string>(
          "--page", [&d](const std::string& text) { read_page(d, text); },
          "A4 (default), A3, WxH, roll (1370 mm wide) or roll:WIDTH")

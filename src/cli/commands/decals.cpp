@@ -41,6 +41,7 @@ decal::SheetOptions sheet_options(const Decals& a, Console& console) {
     options.bleed = kMillimetre * a.bleed_mm;
     options.overlap = kMillimetre * a.overlap_mm;
     options.join = kMillimetre * a.join_mm;
+    options.least_fragment = kMillimetre * kMillimetre * a.least_fragment_mm2;
     options.page = kMillimetre * a.print.page_mm;
     options.upright = a.print.grain == "up";
     options.pixel = 0.0254 / a.print.dpi;
@@ -73,12 +74,14 @@ void print_result(const Decals& a, const decal::Sheet& sheet, const std::vector<
     const std::size_t pages = static_cast<std::size_t>(std::count_if(
         sheet.pages.begin(), sheet.pages.end(), [](const decal::Page& page) { return !page.strain_map; }));
     if (a.common.json) {
-        nlohmann::json j{{"project", a.project.string()},
-                         {"wrote", wrote},
-                         {"pages", pages},
-                         {"max_strain", sheet.max_strain},
-                         {"pieces", nlohmann::json::array()},
-                         {"plates", nlohmann::json::array()}};
+        nlohmann::json j{
+            {"project", a.project.string()},
+            {"wrote", wrote},
+            {"pages", pages},
+            {"max_strain", sheet.max_strain},
+            {"left_out", {{"fragments", sheet.left_out.fragments}, {"paint_mm2", sheet.left_out.paint_area * 1e6}}},
+            {"pieces", nlohmann::json::array()},
+            {"plates", nlohmann::json::array()}};
         for (const decal::Piece& piece : sheet.pieces) j["pieces"].push_back(piece_json(piece));
         for (const decal::Plate& plate : sheet.plates)
             j["plates"].push_back({{"name", plate.name}, {"full_film_units", plate.full}});
@@ -92,6 +95,9 @@ void print_result(const Decals& a, const decal::Sheet& sheet, const std::vector<
     }
     fmt::print("{} on {}, {:.1f} cm2 of film, strained by {:.2f} % at most\n", counted(sheet.pieces.size(), "piece"),
                counted(pages, "page"), film * 1e4, 100 * strain);
+    if (sheet.left_out.fragments > 0)
+        fmt::print("left out: {} with {:.1f} mm2 of paint (--least-fragment 0 lays all)\n",
+                   counted(sheet.left_out.fragments, "fragment"), sheet.left_out.paint_area * 1e6);
     for (const decal::Plate& plate : sheet.plates)
         fmt::print("plate {}: 100 % is {:.2f} film units\n", plate.name, plate.full);
     for (const std::string& path : wrote) fmt::print("wrote {}\n", path);
