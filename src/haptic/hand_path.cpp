@@ -30,10 +30,16 @@ double down_and_up(double t, double in, double stay) {
     return smooth_step(t / in) * (1 - smooth_step((t - in - stay) / in));
 }
 
+/// Path over final speed of what speeds up evenly over kStart from t = 0 on, s.
+double started(double t) {
+    constexpr double kStart = 0.025;  // s
+    if (t <= 0) return 0;
+    return t < kStart ? t * t / (2 * kStart) : t - kStart / 2;
+}
+
 Posture posture(HandMotion motion, double t, double length) {
-    const double w = t - kAir;
+    const double w = std::max(0.0, t - kAir);
     const auto to_depth = [&](double part) { return kAbove + part * length; };
-    if (w < 0) return {.height = kAbove};
     switch (motion) {
         case HandMotion::press:
             return {.height = kAbove - to_depth(0.4) * down_and_up(w, 1.0, 0.4), .lean = 0.1};
@@ -41,7 +47,7 @@ Posture posture(HandMotion motion, double t, double length) {
             return {.height = kAbove - to_depth(0.4) * down_and_up(std::fmod(w, 1.0), 0.12, 0.3)};
         case HandMotion::drag:
             return {.height = kAbove - to_depth(0.25) * smooth_step(w / 0.4),
-                    .along = 0.02 * std::sin(2 * pi * 0.5 * w),
+                    .along = 0.02 * std::sin(2 * pi * 0.5 * w) * smooth_step(w / 0.2),
                     .lean = 0.2};
         case HandMotion::circles: {
             const double in = smooth_step(w / 0.5);
@@ -62,13 +68,17 @@ Posture posture(HandMotion motion, double t, double length) {
             return {.height = kAbove - to_depth(0.3) * smooth_step(w / 0.5), .lean = 0.1};
         case HandMotion::hit: {
             // The root, a tuft's length above the tip, comes down at 0.5 m/s and goes on to 5 mm behind the surface.
-            const double fall = std::min(0.5 * std::fmod(w, 1.0), length + kAbove + 5e-3);
-            return {.height = kAbove - fall * (1 - smooth_step((std::fmod(w, 1.0) - 0.5) / 0.3))};
+            constexpr double kSpeed = 0.5;  // m/s
+            const double now = std::fmod(w, 1.0), depth = length + kAbove + 5e-3;
+            const double fall = kSpeed * (started(now) - started(now - depth / kSpeed));
+            return {.height = kAbove - fall * (1 - smooth_step((now - 0.5) / 0.3))};
         }
-        case HandMotion::slide:
+        case HandMotion::slide: {
+            const double slid = std::max(0.0, w - 0.8);
             return {.height = kAbove - (length + kAbove + 1e-3) * smooth_step(w / 0.8),
-                    .along = 0.03 * std::sin(2 * pi * 0.5 * std::max(0.0, w - 0.8)),
+                    .along = 0.03 * std::sin(2 * pi * 0.5 * slid) * smooth_step(slid / 0.2),
                     .lean = 0.3};
+        }
     }
     return {};
 }
