@@ -17,7 +17,7 @@ TEST_F(Commands, PaintLeavesProjectModelAndPicture) {
     write("s.inkml", stroke_file());
     const Ran ran =
         tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 512 --project " +
-             path("p.tuft") + " --export " + path("m.glb") + " --preview " + path("v.png") + " --size 160x90 --json");
+             path("p.tuft") + " -o " + path("m.glb") + " --preview " + path("v.png") + " --size 160x90 --json");
     ASSERT_EQ(ran.status, 0) << ran.err;
     const json j = json::parse(ran.out);
     EXPECT_EQ(j["strokes"].size(), 1u);

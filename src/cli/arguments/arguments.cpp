@@ -124,7 +124,7 @@ CLI::App* add_replay(CLI::App& app, Replay& replay) {
     add_cache(command, replay.surface);
     add_recolouring(command, replay.recolouring);
     command->add_option("--project", replay.out_project, "write a project file (.tuft)");
-    command->add_option("--export", replay.exported, "write the textured model: .glb, .gltf or .obj");
+    command->add_option("-o,--export", replay.exported, "write the textured model: .glb, .gltf or .obj");
     command->add_option("--preview", replay.preview, "write a picture (.png)");
     add_view(command, replay.view);
     return command;

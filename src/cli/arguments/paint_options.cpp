@@ -207,7 +207,7 @@ void add_mapping(CLI::App* p, Paint& paint) {
 /// Files that are written.
 void add_outputs(CLI::App* p, Paint& paint) {
     p->add_option("--project", paint.output.project, "write a project file (.tuft)");
-    p->add_option("--export", paint.output.exported, "write the textured model: .glb, .gltf or .obj");
+    p->add_option("-o,--export", paint.output.exported, "write the textured model: .glb, .gltf or .obj");
     p->add_option("--preview", paint.output.preview, "write a picture (.png)");
     p->add_option("--forces", paint.output.forces,
                   "write time, pose, force, force on the hand and moment at every sample of the hand (.csv)");
