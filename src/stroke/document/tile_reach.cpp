@@ -52,7 +52,9 @@ Ball ball_around(std::span<const Ball> balls) {
 }
 
 bool meet(const Ball& a, const Ball& b) {
-    return a.radius >= 0 && b.radius >= 0 && glm::distance(a.centre, b.centre) <= a.radius + b.radius;
+    const Vec3 d = a.centre - b.centre;
+    const double reach = a.radius + b.radius;
+    return a.radius >= 0 && b.radius >= 0 && glm::dot(d, d) <= reach * reach;
 }
 
 std::optional<mesh::SurfacePoint> foot(const mesh::SurfaceQuery& query, const brush::Pose& pose, double length) {
