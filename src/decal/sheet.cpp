@@ -17,15 +17,15 @@
 namespace tuft::decal {
 namespace {
 
-constexpr double kLevel = 0.3;         // tangential part of "up" below which a panel is level
-constexpr double kBetween = 0.002;     // metres, least distance of two pieces' prints
-constexpr double kLeastSide = 0.010;   // metres
-constexpr double kStrainPixel = 5e-4;  // metres, of strain maps
-constexpr double kFragment = 0.01;     // of the paint of the piece beyond the seam
-constexpr double kSpeck = 0.1;         // of `least_fragment`
-constexpr double kSpeckOfAll = 0.001;  // of all paint
-constexpr double kSeamStep = 5e-4;     // metres between the places of a seam that are looked at
-constexpr double kBesideSeam = 2e-5;   // metres
+constexpr double kLevel = 0.3;          // tangential part of "up" below which a panel is level
+constexpr double kBetween = 0.002;      // metres, least distance of two pieces' prints
+constexpr double kLeastSide = 0.010;    // metres
+constexpr double kStrainPixel = 5e-4;   // metres, of strain maps
+constexpr double kFragment = 0.01;      // of the paint of the piece beyond the seam
+constexpr double kSpeck = 0.1;          // of `least_fragment`
+constexpr double kSpecksOfAll = 0.001;  // of all paint, all specks together
+constexpr double kSeamStep = 5e-4;      // metres between the places of a seam that are looked at
+constexpr double kBesideSeam = 2e-5;    // metres
 
 /// Panels with what is printed round them.
 struct CutFilm {
@@ -131,14 +131,26 @@ Vec2 beside(const std::array<Vec2, 2>& edge, double s) {
     return edge[0] + s * along + (length > 0 ? kBesideSeam / length : 0) * Vec2(-along.y, along.x);
 }
 
-/// Whether a piece ends at a seam with one of more than 1 / kFragment times its paint.
+/// The place at part s of a half-edge of the film: its triangle of the model, and the weights there.
+std::pair<std::uint32_t, Weights> on_model(const FilmMesh& film, std::size_t half, double s) {
+    const std::array<Weights, 3>& corners = film.weights[half / 3];
+    Weights weights;
+    for (std::size_t c = 0; c < 3; ++c) weights[c] = std::lerp(corners[half % 3][c], corners[(half + 1) % 3][c], s);
+    return {film.source[half / 3], weights};
+}
+
+/// Whether a cut parts a piece from one of more than 1 / kFragment times its paint: paint goes over the seam.
 bool continues_larger_piece(const CutFilm& cut, const std::vector<std::uint32_t>& twin, const Piece& piece,
-                            const std::vector<Piece>& pieces) {
+                            const std::vector<Piece>& pieces, const CoverageFn& coverage) {
     const Panel& panel = cut.panels[piece.surface];
+    const Box2 box = box_of(piece.film);
     for (std::size_t h = 0; h < panel.is_seam.size(); ++h) {
         if (!panel.is_seam[h]) continue;
         const std::array<Vec2, 2> edge = edge_of(panel, h);
-        const std::uint32_t across = twin[3 * std::size_t{panel.chart.triangles[h / 3]} + h % 3];
+        const Vec2 lo = glm::min(edge[0], edge[1]) - kBesideSeam, hi = glm::max(edge[0], edge[1]) + kBesideSeam;
+        if (hi.x < box.lo.x || hi.y < box.lo.y || lo.x > box.hi.x || lo.y > box.hi.y) continue;
+        const std::size_t half = 3 * std::size_t{panel.chart.triangles[h / 3]} + h % 3;
+        const std::uint32_t across = twin[half];
         const std::size_t other = cut.index.at(cut.film.label[across / 3]);
         const std::vector<std::uint32_t>& triangles = cut.panels[other].chart.triangles;
         const auto at = std::lower_bound(triangles.begin(), triangles.end(), across / 3) - triangles.begin();
@@ -147,6 +159,8 @@ bool continues_larger_piece(const CutFilm& cut, const std::vector<std::uint32_t>
         for (int i = 0; i < n; ++i) {
             const double s = (i + 0.5) / n;
             if (!contains(piece.film, beside(edge, s))) continue;
+            if (const auto [triangle, weights] = on_model(cut.film, half, s); coverage(triangle, weights) < 0.5)
+                continue;
             for (const Piece& p : pieces)
                 if (p.surface == other && piece.paint_area < kFragment * p.paint_area &&
                     contains(p.film, beside(there, 1 - s)))
@@ -157,15 +171,23 @@ bool continues_larger_piece(const CutFilm& cut, const std::vector<std::uint32_t>
 }
 
 /// Takes fragments and specks out of the pieces.
-LeftOut leave_out_fragments(const CutFilm& cut, double least, std::vector<Piece>& pieces) {
+LeftOut leave_out_fragments(const CutFilm& cut, const CoverageFn& coverage, const SheetOptions& options,
+                            std::vector<Piece>& pieces) {
+    const double least = options.least_fragment;
     const std::vector<std::uint32_t> twin = atlas::twin_half_edges(cut.film.mesh);
-    double all = 0;
-    for (const Piece& piece : pieces) all += piece.paint_area;
+    double all = 0, specks = 0;
+    for (const Piece& piece : pieces) {
+        all += piece.paint_area;
+        if (piece.paint_area < kSpeck * least) specks += piece.paint_area;
+    }
+    const double speck = specks < kSpecksOfAll * all ? kSpeck * least : 0;
     std::vector<Piece> kept;
     LeftOut left_out;
-    for (const Piece& piece : pieces) {
-        const bool speck = piece.paint_area < std::min(kSpeck * least, kSpeckOfAll * all);
-        if (speck || (piece.paint_area < least && continues_larger_piece(cut, twin, piece, pieces))) {
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        report(options.progress, "fragments", static_cast<double>(i) / static_cast<double>(pieces.size()));
+        const Piece& piece = pieces[i];
+        if (piece.paint_area < speck ||
+            (piece.paint_area < least && continues_larger_piece(cut, twin, piece, pieces, coverage))) {
             ++left_out.fragments;
             left_out.paint_area += piece.paint_area;
         } else {
@@ -310,7 +332,7 @@ Sheet make_sheet(const mesh::TriangleMesh& model, const PrintSource& source, con
     sheet.max_strain = options.max_strain;
     sheet.pieces = find_pieces(cut, source, options, sheet.surfaces);
     if (sheet.pieces.empty()) throw Error("nothing is painted: there is no film to cut");
-    sheet.left_out = leave_out_fragments(cut, options.least_fragment, sheet.pieces);
+    sheet.left_out = leave_out_fragments(cut, source.coverage, options, sheet.pieces);
     for (std::size_t i = 0; i < sheet.pieces.size(); ++i) sheet.pieces[i].number = static_cast<int>(i) + 1;
     const std::vector<Vec2> labels = place_pieces(sheet.pieces, options, sheet.pages);
     draw_pieces(cut, source, options, labels, sheet);

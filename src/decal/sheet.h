@@ -53,7 +53,7 @@ struct Plate {
     double full = 1;                        ///< film units of a tint of 100 %
 };
 
-/// Paint that no piece holds.
+/// What `make_sheet` left out; see there.
 struct LeftOut {
     std::size_t fragments = 0;
     double paint_area = 0;  ///< m²
@@ -93,10 +93,10 @@ inline constexpr double kPrintedBleed = 0.003;
 /// Returns the sheet of a model: panels by `cut_into_panels`, cut lines by `find_outlines`, nested by `nest`. The arrow
 /// of a piece points up the model (+z), or on level surfaces to its back (+y). Pieces are numbered panel by panel.
 ///
-/// A cut leaves fragments where it crosses a motif twice. One that ends at a seam with a piece of at least 100 times
-/// its paint, and has less than `least_fragment`, is too small to be laid and not missed: it is left out, and so is a
-/// speck of less than a tenth of `least_fragment` and a thousandth of all paint anywhere. `Sheet::left_out` says how
-/// much.
+/// A cut leaves fragments where it crosses a motif twice. One whose paint goes on over a seam, in a piece with at least
+/// 100 times as much, and that has less than `least_fragment`, is too small to be laid and not missed: it is left out.
+/// So are specks anywhere of less than a tenth of `least_fragment`, if all of them together have less than a thousandth
+/// of all paint. `Sheet::left_out` says how much.
 ///
 /// Pages of film come first, then their strain maps. Throws `Error` where nothing is painted or a piece fits no page.
 /// The same bits for any number of threads.

@@ -37,8 +37,8 @@ bool is_tap(HandMotion motion);
 
 /// Returns the path of a hand: 1 s in the air, then `motion`. Painting motions press the tuft by 0.25–0.4 of its
 /// length. `hit` brings the ferrule down at 0.5 m/s. `slide` draws the ferrule over the surface. `seed` 0: the plain
-/// motion; else heading, pace and place vary. The root is sped up by less than 60 m/s² and 500 rad/s², for which the
-/// law (law.h) holds.
+/// motion; else heading, pace and place vary. With hair of up to 0.2 m the root is sped up by less than 60 m/s² and
+/// 500 rad/s², for which the law (law.h) holds.
 HandPath hand_path(HandMotion motion, const TrialPlace& place, const brush::Preset& brush, std::uint64_t seed = 0);
 
 /// Options of one trial.

@@ -69,7 +69,6 @@ TEST(LayFlat, ACapIsStrainedByTheLeastPossibleWithinATenth) {
     }
 }
 
-// The strains of a known linear map: σ = 1 / singular values of the map onto the sheet.
 // A flat square with one vertex raised: as rigid as possible it is strained by 4 % there. Bringing that to
 // 3 % need not change the size of the rest. The rest is what lies further than a quarter of the side from the vertex.
 TEST(LayFlat, OneSharpPlaceLeavesTheRestAtItsTrueSize) {
@@ -97,6 +96,7 @@ TEST(LayFlat, OneSharpPlaceLeavesTheRestAtItsTrueSize) {
     EXPECT_LT(std::abs(sum / far), 1e-3);
 }
 
+// The strains of a known linear map: σ = 1 / singular values of the map onto the sheet.
 TEST(LayFlat, MeasuresTheStretchOfALinearMap) {
     const atlas::ChartMesh chart = test::chart_of(
         test::grid_mesh(4, 3, false, false, [](double u, double v) { return Vec3(0.2 * u, 0.1 * v, 0); }));

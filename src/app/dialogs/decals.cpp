@@ -83,6 +83,9 @@ void page_rows(Ui& ui, DecalSettings& c, const SheetFormat& format) {
     ImGui::EndDisabled();
     dialog_row(ui, "");
     ui.toggle("Along the grain", c.along_grain, "All pieces point up the page; else they are turned to fill it");
+    dialog_row(ui, "");
+    ui.toggle("Small fragments too", c.fragments,
+              "Pieces that a cut parts from a large one, and specks, however small");
 }
 
 }  // namespace
@@ -99,6 +102,7 @@ ExportSheets sheets_command(const DecalSettings& c, const stroke::MaskTable& mas
     request.sheet.bleed = c.bleed;
     request.sheet.overlap = c.overlap;
     request.sheet.join = c.join;
+    if (c.fragments) request.sheet.least_fragment = 0;
     request.sheet.page = {page.width, page.height};
     request.sheet.upright = c.along_grain;
     request.sheet.pixel = kInch / c.dpi;

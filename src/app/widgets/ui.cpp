@@ -1,6 +1,7 @@
 #include "app/widgets/ui.h"
 
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -354,6 +355,7 @@ void draw_slider_ground(float lo, float hi, float value, const char* text, float
     const float zero = lo < 0 ? place(0) : at.x, now = place(value);
     draw->AddRectFilled({std::min(zero, now), at.y}, {std::max(zero, now), end.y}, ImGui::GetColorU32(ImGuiCol_Header),
                         lo < 0 ? 0 : round);
+    if (text == nullptr) return;
     const unsigned colour = ImGui::GetColorU32(ImGuiCol_SliderGrab);
     const auto draw_grab = [&](float top, float bottom) {
         draw->AddRectFilled({now - 0.5f * grab, top}, {now + 0.5f * grab, bottom}, colour);
@@ -376,7 +378,8 @@ bool Ui::bare_slider(const char* label, double& value, const SliderRange& range,
     char text[256];
     std::snprintf(text, sizeof text, format, static_cast<double>(v));
     ImGui::PushStyleVar(ImGuiStyleVar_GrabMinSize, px(4));
-    draw_slider_ground(least, most, v, text, width);
+    const bool typed = ImGui::TempInputIsActive(ImGui::GetID(name.c_str()));
+    draw_slider_ground(least, most, v, typed ? nullptr : text, width);
     const ImGuiCol drawn[] = {ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive, ImGuiCol_SliderGrab,
                               ImGuiCol_SliderGrabActive};
     for (const ImGuiCol colour : drawn) ImGui::PushStyleColor(colour, IM_COL32_BLACK_TRANS);

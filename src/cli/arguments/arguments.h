@@ -400,7 +400,7 @@ struct Decals {
     double bleed_mm = 3;             ///< film beyond the paint
     double overlap_mm = 1;           ///< of two panels
     double join_mm = 10;             ///< islands of paint nearer than this share a piece
-    double least_fragment_mm2 = 10;  ///< of paint; smaller ones at a seam are left out
+    double least_fragment_mm2 = 10;  ///< of paint; see decal::make_sheet
     PrintChoice print;
     Common common;
 };

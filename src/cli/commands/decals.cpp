@@ -96,7 +96,7 @@ void print_result(const Decals& a, const decal::Sheet& sheet, const std::vector<
     fmt::print("{} on {}, {:.1f} cm2 of film, strained by {:.2f} % at most\n", counted(sheet.pieces.size(), "piece"),
                counted(pages, "page"), film * 1e4, 100 * strain);
     if (sheet.left_out.fragments > 0)
-        fmt::print("left out: {} with {:.1f} mm2 of paint (--least-fragment 0 lays all)\n",
+        fmt::print("left out: {} with {:.1f} mm2 of paint (--least-fragment 0 lays them)\n",
                    counted(sheet.left_out.fragments, "fragment"), sheet.left_out.paint_area * 1e6);
     for (const decal::Plate& plate : sheet.plates)
         fmt::print("plate {}: 100 % is {:.2f} film units\n", plate.name, plate.full);

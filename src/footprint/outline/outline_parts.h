@@ -91,10 +91,7 @@ struct Ends {
     Vec2 front{0}, rear{0};
 };
 
-/// Orders of points by one coordinate.
-inline bool by_y(const Vec2& a, const Vec2& b) {
-    return a.y < b.y;
-}
+/// Orders points by x.
 inline bool by_x(const Vec2& a, const Vec2& b) {
     return a.x < b.x;
 }
