@@ -160,20 +160,6 @@ TEST_F(SheetOfFormula, LeavesOutWhatACutPartsFromALargePieceAndSaysHowMuch) {
     for (std::size_t i = 0; i < made.pieces.size(); ++i) EXPECT_EQ(made.pieces[i].number, static_cast<int>(i) + 1);
 }
 
-// A dot that ends beside a cut is no fragment, though its film meets that of the area beyond it.
-TEST_F(SheetOfFormula, KeepsAWholeDotBesideACut) {
-    const mesh::TriangleMesh model = test::cylinder_part(kRadius, 2, 0.03, 100, 30);
-    const auto areas_and_dot = [](const Vec3& p) {
-        const Vec2 at(kRadius * std::atan2(p.y, p.x) / kMm, p.z / kMm);
-        if (at.y < 4 || at.y > 26) return false;
-        if (glm::length(at - Vec2(3, 15)) < 1.5) return true;
-        return at.x > 5 || (at.x < -2 && (std::abs(at.y - 15) > 8 || at.x < -14));
-    };
-    const Sheet made =
-        sheet(model, areas_and_dot, {.bleed = 1 * kMm, .join = 2 * kMm, .page = {0.11, 0.08}, .prints = false});
-    EXPECT_EQ(made.left_out.fragments, 0u);
-}
-
 // Dots of 0.5 mm² are specks beside one large area, but not where they are all that is painted.
 TEST_F(SheetOfFormula, LeavesOutSpecksOnlyWhereTheyAreNotMissed) {
     const mesh::TriangleMesh model = test::cylinder_part(kRadius, 2, 0.06, 100, 60);
