@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 #include "core/simd.h"
 #include "footprint/outline/picture.h"
@@ -35,10 +37,19 @@ struct ColumnCoverage {
 
 constexpr int kFew = 8, kAtOnce = 16;  // columns; a picture has as many cells more beyond its last one
 
+/// Values of `n` columns, one vector: left to itself, the compiler works on cells and their floats in quarters of it.
+template <int n>
+struct Lanes {
+    using Float [[gnu::vector_size(4 * n)]] = float;
+    using Int [[gnu::vector_size(4 * n)]] = std::int32_t;
+    using Byte [[gnu::vector_size(n)]] = std::uint8_t;
+};
+
 /// Adds a band to `n` columns from i on.
 template <int n>
 [[gnu::always_inline]] inline void draw_columns(std::uint8_t* __restrict level, int rows, int columns, const Band& band,
                                                 int i) {
+    using Float = typename Lanes<n>::Float;
     const auto cells = static_cast<float>(rows);
     alignas(64) float lo[n], hi[n], whole[n];
     float lowest = cells, highest = -1;
@@ -51,15 +62,20 @@ template <int n>
         lowest = c.lo < lowest ? c.lo : lowest;
         highest = c.hi > highest ? c.hi : highest;
     }
+    Float from, to, width;
+    std::memcpy(&from, lo, sizeof from);
+    std::memcpy(&to, hi, sizeof to);
+    std::memcpy(&width, whole, sizeof width);
     for (int j = static_cast<int>(lowest); static_cast<float>(j) < highest; ++j) {
-        std::uint8_t* __restrict cell = level + std::size_t(j) * columns + i;
-        const auto low = static_cast<float>(j), high = low + 1;
-#pragma omp simd
-        for (int t = 0; t < n; ++t) {
-            const float part = (hi[t] < high ? hi[t] : high) - (lo[t] > low ? lo[t] : low);
-            const float v = static_cast<float>(int{cell[t]}) + whole[t] * (part > 0 ? part : 0.0f) + 0.5f;
-            cell[t] = static_cast<std::uint8_t>(static_cast<int>(v < 255.0f ? v : 255.0f));
-        }
+        std::uint8_t* cell = level + std::size_t(j) * columns + i;
+        typename Lanes<n>::Byte was;
+        std::memcpy(&was, cell, sizeof was);
+        const Float low = Float{} + static_cast<float>(j), high = low + 1.0f;
+        const Float part = (to < high ? to : high) - (from > low ? from : low);
+        const Float v = __builtin_convertvector(was, Float) + width * (part > 0.0f ? part : Float{}) + 0.5f;
+        const auto level_of = __builtin_convertvector(v < 255.0f ? v : Float{} + 255.0f, typename Lanes<n>::Int);
+        was = __builtin_convertvector(level_of, typename Lanes<n>::Byte);
+        std::memcpy(cell, &was, sizeof was);
     }
 }
 

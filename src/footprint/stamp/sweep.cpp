@@ -175,9 +175,12 @@ float take_mean(const Sheared& sheared, SweepScratch& scratch) {
     const int n_lines = sheared.n_lines;
     const double length = sheared.length;
     std::vector<float>&lines = scratch.lines, &sums = scratch.sums;
-    // One empty line before the picture and one after it.
-    lines.assign(static_cast<std::size_t>(n_lines + 2) * kStrip, 0);
-    sums.assign(static_cast<std::size_t>(n_lines + 2) * kStrip, 0);
+    // One empty line before the picture and one after it. The others are computed.
+    lines.resize(static_cast<std::size_t>(n_lines + 2) * kStrip);
+    sums.resize(static_cast<std::size_t>(n_lines + 2) * kStrip);
+    std::fill_n(line_of(lines, 0), kStrip, 0.0f);
+    std::fill_n(line_of(lines, n_lines + 1), kStrip, 0.0f);
+    std::fill_n(line_of(sums, 0), kStrip, 0.0f);
     const auto gain = static_cast<float>(std::min(1.0, (n_lines + 1) / std::abs(length)));
     const auto scale = static_cast<float>(1 / (std::abs(length) * gain));
     const auto upper = [&](double x) {  // line k of `lines` lies at k − 1
@@ -209,8 +212,13 @@ void take_maximum(const Sheared& sheared, SweepScratch& scratch) {
     const int margin = count + 3;  // empty lines before and after the picture
     const int total = n_lines + 2 * margin;
     std::vector<float>& lines = scratch.lines;
-    lines.assign(static_cast<std::size_t>(total) * kStrip, 0);
-    if (count > 1) scratch.sums.assign(static_cast<std::size_t>(total) * kStrip, 0);
+    lines.resize(static_cast<std::size_t>(total) * kStrip);
+    std::fill_n(line_of(lines, 0), std::size_t(margin) * kStrip, 0.0f);
+    std::fill_n(line_of(lines, margin + n_lines), std::size_t(margin) * kStrip, 0.0f);
+    if (count > 1) {
+        scratch.sums.resize(static_cast<std::size_t>(total) * kStrip);
+        std::fill_n(line_of(scratch.sums, total - 1), kStrip, 0.0f);  // which no maximum ahead of it is computed for
+    }
     std::vector<float>& most = count > 1 ? scratch.sums : lines;  // the largest value of `wide` lines from here on
     int wide = 1;
     while (2 * wide <= count) wide *= 2;
