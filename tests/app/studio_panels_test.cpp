@@ -82,6 +82,17 @@ TEST_F(Panels, NothingNeededForPaintingScrollsAt1280Times720) {
 }
 
 // The model stays where it is on the screen when another tool is taken: a handle is at the middle of the view's edge.
+// In a panel ten rows high. The layer that a stroke goes onto is among the rows that are seen.
+TEST_F(Panels, ManyLayersLeaveTheJournalAndTheirButtonInReach) {
+    std::string script = kBowl + "stroke 46%,58% 54%,60%\nwait-ready\n";
+    for (int i = 0; i < 9; ++i) script += "click \"Add a layer\"\nwait-ready\n";
+    const Ran ran = studio(script + "wait 0.2\nexpect label \"layer Layer 10\"\nexpect label \"Add a layer\"\n" +
+                               "expect label \"stroke 10\"\nclick \"layer Layer 9\"\nwait 0.2\nexpect label "
+                               "Opacity\nexpect label \"Add a layer\"\n",
+                           "--headless --size 1280x560");
+    EXPECT_EQ(ran.status, 0) << ran.err;
+}
+
 TEST_F(Panels, LeaveTheViewItsPlaceWhateverTheTool) {
     std::string script = kBowl;
     for (const char* tool : {"brush", "line", "writing", "fill", "mask"})

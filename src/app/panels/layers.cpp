@@ -13,6 +13,8 @@ namespace {
 
 using stroke::Layer;
 
+constexpr float kLayerHeight = 36;
+
 void change(const LayerParts& s, const stroke::LayerEdit& edit) {
     s.work.post(ChangeLayers{edit});
 }
@@ -174,7 +176,7 @@ std::string row_text(const LayerParts& s, const Layer& layer) {
 
 void row(const LayerParts& s, const Layer& layer, std::size_t place) {
     Ui& ui = s.ui;
-    const float height = ui.px(36), middle = 0.5f * (height - ImGui::GetFrameHeight());
+    const float height = ui.px(kLayerHeight), middle = 0.5f * (height - ImGui::GetFrameHeight());
     const float top = ImGui::GetCursorPosY();
     ImGui::SetCursorPosY(top + middle);
     bool visible = layer.visible;
@@ -215,6 +217,32 @@ void row(const LayerParts& s, const Layer& layer, std::size_t place) {
                   layer.visible ? ui.strong : ui.faint, text.c_str());
 }
 
+constexpr const char* kLayersHeight = "height of the rows";
+
+// Rows take half of the panel at most, so that the journal below stays in reach; more of them scroll.
+void begin_list(const LayerParts& s) {
+    const float row = s.ui.px(kLayerHeight) + ImGui::GetStyle().ItemSpacing.y;
+    const float whole = ImGui::GetStateStorage()->GetFloat(ImGui::GetID(kLayersHeight),
+                                                           row * static_cast<float>(s.table.layers.size()));
+    const float most = 0.5f * ImGui::GetWindowHeight(), width = ImGui::GetContentRegionAvail().x;
+    ImGui::SetNextWindowContentSize(ImVec2(width, 0));  // the scrollbar has room beside the rows
+    ImGui::BeginChild("rows", ImVec2(width + ImGui::GetStyle().ScrollbarSize + s.ui.px(2), std::min(whole, most)));
+}
+
+void end_list() {
+    const float whole = ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y;
+    ImGui::EndChild();
+    ImGui::GetStateStorage()->SetFloat(ImGui::GetID(kLayersHeight), whole);
+}
+
+// Brings the row just drawn into sight where its layer has become the active one. `key`: of the list's state.
+void show_active(const Layer& layer, ImGuiID key) {
+    ImGuiStorage* kept = ImGui::GetStateStorage();
+    if (kept->GetInt(key, 0) == static_cast<int>(layer.id)) return;
+    kept->SetInt(key, static_cast<int>(layer.id));
+    if (!ImGui::IsItemVisible()) ImGui::SetScrollHereY();
+}
+
 }  // namespace
 
 void layers_section(const LayerParts& s) {
@@ -223,13 +251,17 @@ void layers_section(const LayerParts& s) {
     if (all.empty()) return;
     ui.heading("Layers");
     ImGui::BeginDisabled(s.viewing);
+    begin_list(s);
+    const ImGuiID shown = ImGui::GetID("active layer that was shown");
     for (std::size_t i = all.size(); i-- > 0;) {
         const Layer layer = all[i];
         ImGui::PushID(static_cast<int>(layer.id));
         row(s, layer, i);
+        if (layer.id == s.layers.active) show_active(layer, shown);
         if (layer.id == s.layers.active && s.layers.show_details) details(s, layer, i);
         ImGui::PopID();
     }
+    end_list();
     if (ui.button("Add a layer", "Strokes on it can be shown, faded and moved apart from the others", 0,
                   all.size() < stroke::kMaxLayers))
         add_layer(s.layers, s.work, s.table, fresh_name(s));
