@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "atlas/texels/log_map.h"
+#include "core/ease.h"
 
 namespace tuft::footprint {
 namespace {
@@ -248,6 +249,94 @@ Recycled<Stretch> touching_stretches(const BranchSurface& surface) {
     return found;
 }
 
+constexpr double kLanded = 0.5;  // of a spine's overlap, that its neighbour touches with when it has wholly landed
+constexpr double kFarthest = 3;  // times its half width, that a strip touches to one side
+// Part of a strip's broad axis on the surface, and cosine between it and the line to the neighbour, up to which the
+// strip stands on its edge, and from which on it lies beside the neighbour.
+constexpr double kStandsAside = 0.6, kLiesBeside = 0.8;
+
+/// How far a strip touches towards a neighbour, and to which side.
+struct TouchingPart {
+    double over_half = 1, side = 0;
+};
+
+/// `own`: section of the strip; `other`: of the neighbour at the same part of its hair, above the surface.
+TouchingPart touching_part(const Cut& own, const Cut& other) {
+    const Vec3 broad = own.broad();
+    const Vec2 flat(broad), way = other.centre - own.centre;
+    const double half = Cut::kStripChord * glm::length(flat), distance = glm::length(way);
+    if (!(half > 1e-9) || !(distance > 1e-9)) return {};
+    const double along = glm::dot(way, flat) / glm::length(flat), touching = std::max(own.overlap(), 0.0);
+    const double end = touching / std::max(touching - other.overlap(), 1e-12) * std::abs(along) / half;
+    const double lies = glm::length(flat) / glm::length(broad);
+    const double part = smooth_step((lies - kStandsAside) / (kLiesBeside - kStandsAside)) *
+                        smooth_step((std::abs(along) / distance - kStandsAside) / (kLiesBeside - kStandsAside));
+    return {std::lerp(1.0, std::min(end, kFarthest), part), along};
+}
+
+/// The neighbour that an outermost strip would have on its free side, by what is on its other side.
+Cut beyond(const Cut& own, const Cut& inner) {
+    Cut cut = own;
+    cut.centre += own.centre - inner.centre;
+    cut.z = own.half_height() - 2 * own.overlap() + inner.overlap();
+    return cut;
+}
+
+/// Bounds strips by where the underside between them and a neighbour that has not landed leaves the surface.
+class RowLanding {
+  public:
+    RowLanding(Recycled<Trail>& trails, std::span<const Stretch> stretches, std::span<const BranchSurface> surfaces)
+        : trails_(trails), stretches_(stretches), surfaces_(surfaces), most_(surfaces.size(), -1.0) {
+        for (const Trail& trail : trails)
+            for (const Cut& cut : trail.cuts) most(trail.branch) = std::max(most(trail.branch), cut.overlap());
+    }
+
+    /// Trail k on the side of a neighbour.
+    void bound(std::size_t k, int neighbour) {
+        const bool lands = most(neighbour) >= 0;
+        bound(k, neighbour, lands ? 1 : kFarthest, lands ? most(neighbour) / most_of(k) : 0,
+              [](const Cut&, const Cut& beside) { return beside; });
+    }
+    /// Trail k, an outermost one, on its free side.
+    void bound_beyond(std::size_t k, int inner) {
+        if (most(inner) >= 0) bound(k, inner, 1, most_of(k) / std::max(most(inner), 1e-12), beyond);
+    }
+
+  private:
+    template <class OtherCut>
+    void bound(std::size_t k, int neighbour, double farthest, double landed_part, OtherCut other_of) {
+        const double landed = smooth_step(landed_part / kLanded);
+        if (landed >= 1) return;
+        const BranchSurface& surface = surfaces_[static_cast<std::size_t>(neighbour)];
+        for (std::size_t i = 0; i < trails_[k].cuts.size(); ++i) {
+            Cut& own = trails_[k].cuts[i];
+            const double s = std::lerp(stretches_[k].begin, stretches_[k].end, sample_places()[i]);
+            const Cut other = other_of(own, surface.at(std::min(s, surface.end())));
+            if (other.overlap() >= 0) continue;
+            const TouchingPart to = touching_part(own, other);
+            (to.side < 0 ? own.reach.x : own.reach.y) = std::lerp(std::min(to.over_half, farthest), 1.0, landed);
+        }
+    }
+    double& most(int branch) { return most_[static_cast<std::size_t>(branch)]; }
+    double most_of(std::size_t k) { return std::max(most(trails_[k].branch), 1e-12); }
+
+    Recycled<Trail>& trails_;
+    std::span<const Stretch> stretches_;
+    std::span<const BranchSurface> surfaces_;
+    Recycled<double> most_;  // overlap of each branch, metres; −1: it does not touch
+};
+
+void bound_strips(RowLanding landing, std::span<const Trail> trails, std::span<const brush::Opening> neighbours) {
+    for (std::size_t k = 0; k < trails.size(); ++k) {
+        Recycled<int> beside;
+        for (const brush::Opening& pair : neighbours)
+            if (pair.first == trails[k].branch || pair.second == trails[k].branch)
+                beside.push_back(pair.first == trails[k].branch ? pair.second : pair.first);
+        for (const int branch : beside) landing.bound(k, branch);
+        if (beside.size() == 1) landing.bound_beyond(k, beside.front());
+    }
+}
+
 }  // namespace
 
 Cut cut_between(const Cut& p, const Cut& q, double f) {
@@ -264,7 +353,8 @@ Cut cut_between(const Cut& p, const Cut& q, double f) {
             unit(glm::mix(p.m, q.m, f), p.m),
             glm::dot(turn, turn) > 1e-6 ? glm::normalize(turn) : p.turn,
             glm::mix(p.slant, q.slant, f),
-            glm::mix(p.bow, q.bow, f)};
+            glm::mix(p.bow, q.bow, f),
+            glm::mix(p.reach, q.reach, f)};
 }
 
 Recycled<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<const brush::ContactPlane> planes) {
@@ -307,12 +397,15 @@ Recycled<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<const b
 Recycled<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
                             double length, double film) {
     Recycled<Trail> found;
+    Recycled<Stretch> stretches;
+    Recycled<BranchSurface> surfaces;
     const std::size_t count = tuft.branches.size();
+    surfaces.reserve(count);
     for (std::size_t k = 0; k < count; ++k) {
         const auto& sections = tuft.branches[k].sections;
         if (sections.size() < 2) continue;
-        const BranchSurface surface(tuft.branches[k], tuft.strips, frame, k < planes.size() ? &planes[k] : nullptr,
-                                    std::max(film, 0.0));
+        const BranchSurface& surface = surfaces.emplace_back(
+            tuft.branches[k], tuft.strips, frame, k < planes.size() ? &planes[k] : nullptr, std::max(film, 0.0));
         // The middle one of several branches goes on as the trunk.
         const bool carries = count > 1 && k == count / 2 && !tuft.wide;
         const double trunk = carries ? surface.at_section(tuft.branches[0].sections.size() - 1) : 1e9;
@@ -340,8 +433,10 @@ Recycled<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, st
                         trail.openings[next++].width.push_back(surface.value_at(s, opening.width));
             }
             found.push_back(std::move(trail));
+            stretches.push_back(stretch);
         }
     }
+    if (tuft.strips && surfaces.size() == count) bound_strips({found, stretches, surfaces}, found, tuft.openings);
     return found;
 }
 

@@ -25,6 +25,8 @@ struct Cut {
     /// Metres, (u, v), along the hair: by how much a strip between spines of other lengths goes aslant and bends to its
     /// edges, see `bent`.
     Vec2 slant{0}, bow{0};
+    /// How far a strip touches from its middle towards −broad and +broad, over its half width there.
+    Vec2 reach{1, 1};
 
     double half_height() const { return std::sqrt(a * a * e.z * e.z + b * b * m.z * m.z); }
     double overlap() const { return half_height() - z; }
@@ -79,7 +81,9 @@ struct TrailPart {
 };
 
 /// Returns the touching parts of all branches, cut into sections; see `outlines_of` (outline.h) for the arguments.
-/// `length` is the tuft's, metres.
+/// `length` is the tuft's, metres. Between two spines of a row the underside is linear at equal parts of their hair:
+/// where one touches by o > 0 and the other is o' above the surface, what touches ends at o / (o + o') of the way. So a
+/// row that lands or leaves spine by spine goes out evenly to its sides (`Cut::reach`).
 Recycled<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
                             double length, double film);
 

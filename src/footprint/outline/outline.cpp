@@ -81,19 +81,20 @@ struct StripPlace {
     double s = 0, bow = 0;
 };
 
+StripPlace strip_place(const Vec2& at) {
+    const double s = std::clamp(at.x / Cut::kStripChord, -1.0, 1.0);
+    return {at, s, 1 - s * s};
+}
+
 /// Corners of a strip in order; with `pieces` > 1 its broad sides in as many pieces.
 Recycled<StripPlace> strip_places(std::span<const Vec2> strip, int pieces) {
     Recycled<StripPlace> places;
     places.reserve(strip.size() + 2 * static_cast<std::size_t>(pieces));
-    const auto add = [&](const Vec2& at) {
-        const double s = std::clamp(at.x / Cut::kStripChord, -1.0, 1.0);
-        places.push_back({at, s, 1 - s * s});
-    };
     for (std::size_t k = 0; k < strip.size(); ++k) {
         const Vec2 &c = strip[k], &next = strip[k + 1 < strip.size() ? k + 1 : 0];
         const int n = std::abs(next.x - c.x) > 0.5 * Trail::kStripChord ? pieces : 1;
-        add(c);
-        for (int i = 1; i < n; ++i) add(glm::mix(c, next, double(i) / n));
+        places.push_back(strip_place(c));
+        for (int i = 1; i < n; ++i) places.push_back(strip_place(glm::mix(c, next, double(i) / n)));
     }
     return places;
 }
@@ -116,13 +117,18 @@ void add_strip_shadow(const Cut& cut, std::span<const Vec2> strip, std::span<con
     const std::size_t before = corners.size(), n = places.size();
     corners.resize(before + 2 * n);  // as many as there can be
     Vec2* to = corners.data() + before;
-    const double first = height(places[0]);
-    double p = first;
+    const bool whole = cut.reach == Vec2(1);
+    const auto touching = [&](const StripPlace& c) {
+        return whole ? c : strip_place({c.at.x * (c.at.x < 0 ? cut.reach.x : cut.reach.y), c.at.y});
+    };
+    StripPlace at = touching(places[0]);
+    double p = height(at);
     for (std::size_t k = 0; k < n; ++k) {
-        const StripPlace& next = places[k + 1 < n ? k + 1 : 0];
-        const double q = k + 1 < n ? height(next) : first;
-        if (p <= 0) *to++ = point(places[k]);
-        if ((p <= 0) != (q <= 0)) *to++ = glm::mix(point(places[k]), point(next), p / (p - q));
+        const StripPlace next = touching(places[k + 1 < n ? k + 1 : 0]);
+        const double q = height(next);
+        if (p <= 0) *to++ = point(at);
+        if ((p <= 0) != (q <= 0)) *to++ = glm::mix(point(at), point(next), p / (p - q));
+        at = next;
         p = q;
     }
     if (to == corners.data() + before) *to++ = centre;  // it only just touches

@@ -114,6 +114,11 @@ void spread_section(Cut& cut, const Halves& halves) {
     // The hair of a turned section leans to one side of its strip; spread hair stands up.
     const double leans = glm::dot(thick, cut.broad()) / std::max(glm::dot(cut.broad(), cut.broad()), 1e-18);
     cut.centre += 0.5 * Trail::kStripChord * Vec2(up + down);
+    // The middle moves, what touches does not.
+    const double to_up = glm::length(up), to_down = glm::length(down), mean = 0.5 * (to_up + to_down);
+    double &reach_up = way < 0 ? cut.reach.x : cut.reach.y, &reach_down = way < 0 ? cut.reach.y : cut.reach.x;
+    reach_up = (reach_up * to_up - 0.5 * (to_up - to_down)) / mean;
+    reach_down = (reach_down * to_down + 0.5 * (to_up - to_down)) / mean;
     set_axes(cut, broad, area / (width * size) * across + (1 - part) * leans * broad, halves.widens);
 }
 

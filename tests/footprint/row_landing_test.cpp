@@ -1,0 +1,75 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "brush/state/tuft_state.h"
+#include "footprint/outline/cuts.h"
+#include "footprint/outline/outline.h"
+
+// A row of spines that lands spine by spine.
+
+namespace tuft::footprint {
+namespace {
+
+constexpr int kSpines = 5;
+constexpr double kPitch = 2e-3, kHalfThick = 0.4e-3;  // metres
+
+/// A row along y whose hair lies along x, its middle `press` below the touch and its spines higher by `step` each from
+/// the middle on.
+brush::TuftState lying_row(double press, double step) {
+    brush::TuftState tuft;
+    tuft.wide = tuft.strips = true;
+    for (int k = 0; k < kSpines; ++k) {
+        const int out = std::abs(k - kSpines / 2);
+        brush::Branch branch;
+        for (int i = 0; i < 6; ++i) {
+            brush::Section s;
+            s.centre = {-1e-3 * i, kPitch * (k - kSpines / 2), kHalfThick - press + out * step};
+            s.tangent = {1, 0, 0};
+            s.e = {0, 1, 0};
+            s.m = {0, 0, 1};
+            s.a = 0.5 * kPitch / Cut::kStripChord;
+            s.b = kHalfThick;
+            branch.sections.push_back(s);
+        }
+        tuft.branches.push_back(branch);
+        if (k > 0) tuft.openings.push_back({k - 1, k, Recycled<double>(6, -1e-4)});
+    }
+    return tuft;
+}
+
+/// How far out on each side the outlines reach, metres.
+struct Sides {
+    double lo = 0, hi = 0;
+};
+Sides sides_of(const brush::TuftState& tuft) {
+    Sides out{1, -1};
+    for (const Outline& o : outlines_of(tuft, Frame{}, {}, {.film = 0}))
+        for (const Vec2& p : o.control) out = {std::min(out.lo, p.y), std::max(out.hi, p.y)};
+    return out;
+}
+
+/// A row that is higher to its sides by a slope touches as far out as press over slope: no strip lands at once.
+TEST(RowLanding, GoesOutEvenlyToItsSides) {
+    constexpr double kSlope = 0.05;
+    for (double out = 0.1; out < 2.2; out += 0.1) {  // pitches from the middle
+        const Sides sides = sides_of(lying_row(kSlope * out * kPitch, kSlope * kPitch));
+        // Round ends of a spine that has just landed lie behind its neighbour's, which slants its strip: by 0.0144. The
+        // free side of the last one goes over into all of it: 0.0373 further.
+        EXPECT_NEAR(sides.hi / kPitch, out, out < 1.95 ? 0.02 : 0.05) << out;
+        EXPECT_NEAR(sides.lo / kPitch, -sides.hi / kPitch, 1e-9) << out;
+    }
+}
+
+/// A row that lies evenly touches over its whole width at once.
+TEST(RowLanding, OfAnEvenRowIsAtOnce) {
+    for (const double press : {1e-7, 1e-5, 1e-4}) {
+        const Sides sides = sides_of(lying_row(press, 0));
+        EXPECT_NEAR(sides.hi, 2.5 * kPitch, 1e-9) << press;
+        EXPECT_NEAR(sides.lo, -2.5 * kPitch, 1e-9) << press;
+    }
+}
+
+}  // namespace
+}  // namespace tuft::footprint
