@@ -9,6 +9,7 @@
 #include "app/view/texture.h"
 #include "models.h"
 #include "paths.h"
+#include "stroke/gesture/roll.h"
 #include "stroke/placement/tip_lag.h"
 
 namespace tuft::app {
@@ -64,6 +65,65 @@ TEST(Curve, BreaksWhereThereIsNoModel) {
     const brush::Preset preset = brush::load_preset("wolf-small");
     EXPECT_EQ(curve_poses(query, points, {.holder = stroke::holder_options(preset, query.mesh())}).size(),
               2u);  // over the hole
+}
+
+/// Anticlockwise along a circle on the sheet, from where it goes to the right, by `angle` radians; a point every 2°.
+std::vector<CurvePoint> arc_on_sheet(const Vec3& c, double radius, double angle) {
+    std::vector<CurvePoint> points;
+    const int n = static_cast<int>(std::ceil(angle * 90 / std::numbers::pi));
+    for (int i = 0; i <= n; ++i) {
+        const double a = angle * i / n;
+        points.push_back({.position = c + radius * Vec3(std::sin(a), -std::cos(a), 0)});
+    }
+    return points;
+}
+
+struct CurveOnSheet : testing::Test {
+    const mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(source_folder() + "/models/sheet.ply")).mesh;
+    const mesh::SurfaceQuery query{mesh};
+    const Vec3 c{mesh.bounds.centre().x, mesh.bounds.centre().y, mesh.bounds.hi.z};
+    /// Slow, so that a sample's step turns by less than is asked for; pressed as long as it can be.
+    static constexpr CurveSettings kSlow{.taper_in = 1e-3, .taper_out = 1e-3, .speed = 0.01};
+};
+
+/// A ferrule that keeps its direction turns against the circle by 1/R a metre; its hair is λ/R (1 − exp(−s/λ)) late,
+/// with λ half its length.
+TEST_F(CurveOnSheet, TheTipLagFollowsATurnOfTheCurveAsInATrace) {
+    const brush::Preset flat = brush::load_preset("flat-12");
+    constexpr double kRadius = 0.03, kAngle = 1.5;
+    std::vector<double> turns;
+    CurveHand hand{.holder = stroke::holder_options(flat, mesh), .settings = kSlow};
+    hand.holder.tip_lag = {{0, 0}, {0.02, 0}};
+    hand.holder.tip_lag_change = [&](double, const Vec2&, double turn) {
+        turns.push_back(turn);
+        return Vec2{0};
+    };
+    ASSERT_EQ(curve_poses(query, arc_on_sheet(c, kRadius, kAngle), hand).size(), 1u);
+    ASSERT_GT(turns.size(), 100u);
+    const double lambda = 0.5 * flat.length, late = lambda / kRadius * -std::expm1(-kAngle * kRadius / lambda);
+    // The last pressed sample is a step before the end, and the curve straightens over its last 2°.
+    constexpr double kNear = 0.03;
+    EXPECT_NEAR(std::remainder(turns.back() - (late - kAngle), std::numbers::pi), 0, kNear);
+    EXPECT_GT(late, 10 * kNear);
+}
+
+/// The hand lags by asin(λ / R) (gesture/roll.h), the blade by its string over R more.
+TEST_F(CurveOnSheet, ABladeTurnsWithItsHairAsInATrace) {
+    const brush::Preset sword = brush::load_preset("sword-8");
+    constexpr double kRadius = 0.02, kAngle = 3.5;
+    CurveHand hand{.holder = stroke::holder_options(sword, mesh), .settings = kSlow, .roll_follow = true};
+    const double string = hand.holder.tip_lag_turn;
+    hand.holder.tip_lag = {{0, 0}, {0.02, 0}};
+    const auto strokes = curve_poses(query, arc_on_sheet(c, kRadius, kAngle), hand);
+    ASSERT_EQ(strokes.size(), 1u);
+    const Vec3 broad = strokes[0].back().rotation * Vec3(1, 0, 0);
+    // Across the path is along the radius.
+    const double across = kAngle - 0.5 * std::numbers::pi, lag = std::asin(stroke::kRollLag / kRadius);
+    // The curve straightens over its last 2°, which the hand follows over 5 mm.
+    constexpr double kNear = 4e-3;
+    EXPECT_NEAR(std::remainder(std::atan2(broad.y, broad.x) - (across - lag - string / kRadius), std::numbers::pi), 0,
+                kNear);
+    EXPECT_GT(string / kRadius, 3 * kNear) << "which the blade's own lag exceeds";
 }
 
 /// Under a holder that leans by so many radians to the right and down.
