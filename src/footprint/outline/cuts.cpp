@@ -250,7 +250,8 @@ Recycled<Stretch> touching_stretches(const BranchSurface& surface) {
 }
 
 constexpr double kLanded = 0.5;  // of a spine's overlap, that its neighbour touches with when it has wholly landed
-constexpr double kFarthest = 3;  // times its half width, that a strip touches to one side
+constexpr double kOfOneLength = 0.01;  // of its length, by which a neighbour's hair differs at most
+constexpr double kFarthest = 3;        // times its half width, that a strip touches to one side
 // Part of a strip's broad axis on the surface, and cosine between it and the line to the neighbour, up to which the
 // strip stands on its edge, and from which on it lies beside the neighbour.
 constexpr double kStandsAside = 0.6, kLiesBeside = 0.8;
@@ -305,9 +306,13 @@ class RowLanding {
   private:
     template <class OtherCut>
     void bound(std::size_t k, int neighbour, double farthest, double landed_part, OtherCut other_of) {
-        const double landed = smooth_step(landed_part / kLanded);
-        if (landed >= 1) return;
         const BranchSurface& surface = surfaces_[static_cast<std::size_t>(neighbour)];
+        const double length = surface.from_tip(surface.end()),
+                     own_length = surfaces_[static_cast<std::size_t>(trails_[k].branch)].from_tip(1e9);
+        // Hair of other lengths does not lie side by side at equal parts.
+        const double differ = smooth_step(std::abs(length - own_length) / (kOfOneLength * length));
+        const double landed = std::max(smooth_step(landed_part / kLanded), differ);
+        if (landed >= 1) return;
         for (std::size_t i = 0; i < trails_[k].cuts.size(); ++i) {
             Cut& own = trails_[k].cuts[i];
             const double s = std::lerp(stretches_[k].begin, stretches_[k].end, sample_places()[i]);

@@ -67,7 +67,7 @@ TriedStrokes::Painted TriedStrokes::paint(Wish wish) const {
     Painted out{.wish = std::move(wish), .rgb = {}};
     try {
         const brush::Preset preset = brush::load_preset(out.wish.brush);
-        CacheKey key("tried stroke 4");
+        CacheKey key("tried stroke 5");
         brush::Preset content = preset;
         content.name.clear();
         content.note.clear();
