@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/error.h"
 #include "core/files/files.h"
 #include "core/system/parallel.h"
 #include "stroke/drawing/plane_ink.h"
@@ -109,6 +110,16 @@ double width_of_head(const BrushHand& hand, const Pace& pace, double inside) {
     double first = 60;
     while (first < 140 && width_at(first) < 1) first += 0.5;
     return width_at(first + inside);
+}
+
+// Before a stroke is drawn: the cells of such a character are smaller than the print of a hair.
+TEST(Writer, ACharacterFarTooSmallForTheFinestBrushIsRefused) {
+    const Glyph glyph = bundled(U'一');
+    const auto write = [&](double side) {
+        return Writer({.style = load_style("kaishu"), .side = side}).write({glyph});
+    };
+    EXPECT_THROW(write(1e-5), Error);
+    EXPECT_NO_THROW(write(0.01));
 }
 
 TEST(BrushHand, AHeadIsSetDownAcrossThePathAndIsRounderForIt) {
@@ -286,6 +297,49 @@ TEST(Fit, TheLastTriesLessenTheWrongInkOfAPaintersSteps) {
     };
     const int coarse = wrong(0), last = wrong(2);
     EXPECT_LT(last, 0.95 * coarse) << "a twentieth of " << coarse << " cells: half of what it gains in characters";
+}
+
+// The head of a 撇: set down to the lower right, turned to the lower left. Pressed too soon, the belly of the tuft
+// reaches back beyond the point where it was set down, and a path that begins later does not help.
+TEST(Fit, ABellyThatReachesBackBeyondAHeadIsPressedLess) {
+    stroke::WidthTables tables;
+    const std::string brush = "goat-medium";
+    const BrushHand hand{tables.preset(brush), tables.of(brush), tables.holder(brush), 1.3e-4};
+    int beyond = 0;
+    for (const double scale : {1.0, 1.2, 1.4}) {
+        const auto sized = [&](Ring ring) {
+            for (Vec2& p : ring) p *= scale;
+            return ring;
+        };
+        const Ring head = sized({{98, 294},
+                                 {104, 301},
+                                 {114, 298},
+                                 {140, 286},
+                                 {162, 266},
+                                 {167, 252},
+                                 {160, 240},
+                                 {140, 222},
+                                 {90, 166},
+                                 {30, 108},
+                                 {16, 100},
+                                 {12, 104},
+                                 {40, 140},
+                                 {80, 194},
+                                 {98, 226},
+                                 {100, 262}});
+        FitTarget target{.wanted = cells_over(std::span(&head, 1), 2, 80)};
+        const Cells& cells = target.wanted;
+        fill(target.wanted, std::span(&head, 1));
+        const StrokeLine line = make_stroke_line(sized({{106, 291}, {136, 252}, {108, 216}, {66, 160}, {18, 106}}));
+        const FitResult fitted = fit_stations(make_stations(line, measure_sides(line, std::span(&head, 1)), cells),
+                                              target, hand, {}, {.knuckle_tries = 0, .last_tries = 0});
+        const stroke::PlaneInk ink = draw_on_plane(fitted.stations, hand, {}, 2, cells.cell);
+        for (int j = 0; j < cells.height; ++j)
+            for (int i = 0; i < cells.width; ++i)
+                if (const Vec2 p = cells.centre(i, j); glm::distance(p, head[1]) < 30 && !cells.at(i, j))
+                    beyond += ink.at(p * hand.unit) > 0.5;
+    }
+    EXPECT_LT(beyond, 3 * 38) << "of each a spot 14 units across, a third of a stroke's width: 38 cells";
 }
 
 // Where no try meets the target, the path is the one that was given.

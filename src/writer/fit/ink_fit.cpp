@@ -129,19 +129,31 @@ Errors errors_of(const std::vector<Station>& s, const std::vector<Station>& side
     Reach reach_head, reach_tail;
     const std::size_t touch = trace.samples.size() - 1 - n;  // samples before that of the first station
     const Vec2 out_head = -direction_at(sides, 0), out_tail = direction_at(sides, n - 1);
+    // The station at whose time ink first covered a place.
+    const auto station_of = [&](const Vec2& p) {
+        const double when = ink.when(p * unit);
+        const auto later = std::lower_bound(trace.samples.begin(), trace.samples.end(), when,
+                                            [](const stroke::StrokeSample& a, double time) { return a.time < time; });
+        const auto index = static_cast<std::size_t>(later - trace.samples.begin());
+        return std::min(index - std::min(index, touch), n - 1);
+    };
     for (int j = 0; j < cells.height; ++j)
         for (int i = 0; i < cells.width; ++i) {
             const Vec2 p = cells.centre(i, j);
             const std::size_t at = std::size_t(j) * cells.width + i;
             const bool wanted = cells.inside[at] != 0, there = coverage[at] > kTaken;
             if (!wanted && !there) continue;
-            reach_head.add(p - s[0].centre, out_head, wanted, there);
+            reach_head.add(p - s[0].centre, out_head, wanted, there && (wanted || station_of(p) == 0));
             reach_tail.add(p - s[n - 1].centre, out_tail, wanted, there);
             if (wanted && there) continue;
             const double error = target.weight(at) * (wanted ? part : -part);
             const std::size_t k = nearest_station(s, p);
             if (k < 2 && glm::dot(p - s[0].centre, out_head) > 0) {
-                head += error * spacing;
+                // A belly that reaches back beyond the head is too wide; a shorter path would only press it together.
+                if (const std::size_t by = there ? station_of(p) : 0; by > 0)
+                    e.kick[by] -= error;
+                else
+                    head += error * spacing;
                 continue;
             }
             if (k + 2 >= n && glm::dot(p - s[n - 1].centre, out_tail) > 0) {
@@ -149,12 +161,7 @@ Errors errors_of(const std::vector<Station>& s, const std::vector<Station>& side
                 continue;
             }
             if (there) {
-                const double when = ink.when(p * unit);
-                const auto later =
-                    std::lower_bound(trace.samples.begin(), trace.samples.end(), when,
-                                     [](const stroke::StrokeSample& a, double time) { return a.time < time; });
-                const auto index = static_cast<std::size_t>(later - trace.samples.begin());
-                const std::size_t by = std::min(index - std::min(index, touch), n - 1);
+                const std::size_t by = station_of(p);
                 if (std::abs(along[by] - along[k]) > kOwn) {
                     e.kick[by] -= error;
                     continue;

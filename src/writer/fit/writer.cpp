@@ -19,10 +19,11 @@ namespace {
 
 constexpr double kMargin = 80;                 // units of cells around a stroke
 constexpr float kUnder = 0.25f;                // weight of an error under another stroke
-constexpr std::uint64_t kVersion = 17;         // of the fit
+constexpr std::uint64_t kVersion = 18;         // of the fit
 constexpr std::size_t kMostStations = 20'000;  // of a stroke
 constexpr double kMiddlePressure = 0.4;        // that draws the median width
 constexpr double kCoarse = 3;                  // median widths of a line at that pressure: the brush is too coarse
+constexpr double kBlot = kSide / 4;            // units of a brush's finest line with which no stroke can be told apart
 constexpr double kFine = 4.0 / 3;              // median widths that a brush must reach, or it is too fine
 
 double median_width(const stroke::LineWidths& widths, double unit) {
@@ -33,6 +34,13 @@ std::string sized(const std::string& brush, double factor) {
     const brush::SizedName name = brush::sized_name(brush);
     const double size = std::clamp(name.factor * factor, brush::kLeastSize, brush::kMostSize);
     return brush::name_of({name.base, std::round(size * 1000) / 1000});
+}
+
+Message too_coarse(const std::string& brush, const stroke::LineWidths& widths, double side) {
+    const auto mm = [](double metres) { return fmt::format("{:.2g}", metres * 1e3); };
+    return Message(
+        "characters of {} mm are too small for {}, whose finest line is {} mm wide: it writes characters from {} mm on",
+        mm(side), brush, mm(widths.least()), mm(widths.least() * kSide / kBlot));
 }
 
 std::uint64_t hash_of(const std::vector<Station>& s, std::uint64_t seed) {
@@ -145,6 +153,10 @@ Writer::Fitted Writer::fit_stroke(const Glyph& glyph, std::size_t stroke, const 
 std::vector<std::vector<WrittenStroke>> Writer::write(const std::vector<Glyph>& glyphs, const ProgressFn& progress) {
     const BrushHand with = hand();
     const Pace at = pace();
+    const bool brushed =
+        options_.style.kind == HandKind::brush &&
+        std::any_of(glyphs.begin(), glyphs.end(), [](const Glyph& g) { return !g.single_line && !g.strokes.empty(); });
+    if (brushed && with.widths.least() > kBlot * unit()) throw Error(too_coarse(brush_, with.widths, options_.side));
     const std::uint64_t seed = seed_of(with, at);
     struct Place {
         std::size_t glyph, stroke;
