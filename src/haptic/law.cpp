@@ -174,8 +174,9 @@ double path_ahead(const LawOptions& options, const LawState& s, const Vec3& move
 double most_force(const LawOptions& options, double left, double ahead) {
     const double k = tank_stiffness(options);
     if (ahead <= 0) return std::sqrt(2 * k * left) - k * ahead;  // against it, the tank only fills
-    if (left < k * ahead * ahead) return left / ahead;
-    return std::sqrt(2 * k * left - k * k * ahead * ahead);
+    const double fall = k * ahead, whole = left / (fall * ahead);
+    const double n = std::floor(std::sqrt(0.25 + 2 * whole) - 0.5);  // n (n + 1) / 2 <= whole
+    return left / ((n + 1) * ahead) + 0.5 * n * fall;
 }
 
 /// Step 6 of a moment, which may take `left` J while the wrist goes on turning by `turned` a period.

@@ -34,7 +34,8 @@
 ///    v², which came from the hand. An empty tank is filled to 0.5 µJ, with 0.8 µJ at most in a contact, from which a
 ///    hand that moves fills it by itself. When free, e is at least e_0.
 ///
-///        |f| <= e′ / a where e′ < k a², else √(2 k e′ − k² a²);   a = Δx · f̂ + 60 m/s² T² + count,
+///        |f| <= e′ / ((n + 1) a) + n k a / 2,  n the most with k a² n (n + 1) / 2 <= e′;  a = Δx · f̂ + 60 m/s² T² +
+///        count,
 ///
 ///    k = min(k_max, 1.25 K); e′ is e + w less what forces on their way will take. A force that ends with its energy so
 ///    falls by k a a period at most. Where a < 0 the tank only fills: |f| <= √(2 k e′) − k a.
