@@ -213,7 +213,7 @@ double largest_strain(const ChartMesh& chart, std::span<const Vec2> flat) {
     return largest;
 }
 
-FlatPanel lay_flat(const ChartMesh& chart, double limit) {
+FlatPanel lay_flat(const ChartMesh& chart, double limit, SheetSize size) {
     if (!chart.disk) return {};
     const std::vector<Reference> references = references_of(chart);
     std::vector<Vec2> flat = unroll(chart, references);
@@ -238,8 +238,8 @@ FlatPanel lay_flat(const ChartMesh& chart, double limit) {
         limiter.run(scaled, limit);
         panel = finished(chart, references, std::move(scaled));
     }
-    if (!panel.within(limit)) return panel;
-    // The limit holds. Where it does at a size nearer to the true one too, most of the film is strained less.
+    if (!panel.within(limit) || size == SheetSize::balanced) return panel;
+    // Where the limit is met at a size nearer to the true one too, most of the film is strained less.
     for (const double part : {0.0, 0.5}) {
         std::vector<Vec2> nearer = times(flat, 1 + part * (balance - 1));
         limiter.run(nearer, limit);

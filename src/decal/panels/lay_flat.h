@@ -34,17 +34,22 @@ struct FlatPanel {
     bool within(double limit) const { return sound && strain <= limit; }
 };
 
+/// Size of a sheet whose strain must be limited.
+enum class SheetSize {
+    balanced,  ///< the greatest and the least stretch are as far from 1: whether the limit can be met
+    nearest,   ///< the true one, or half way to it, where the limit is met there too; else balanced
+};
+
 /// Lays a disk (metres) flat at true size. Developable panels are unrolled triangle by triangle: exact to rounding.
 /// Others are laid out as rigid as possible [Liu2008]: Σ area Σ_k (1/σ_k − 1)² is least. Where that strains a triangle
 /// by more than `limit`, local and global steps move strain to its neighbours until no triangle exceeds the limit
 /// [Bouaziz2014]. The local step clamps both stretches of each triangle into 1 ± limit. The global step takes all
 /// vertices to the mean of these targets. Ends early where the least mean of the strain already rules the limit out.
-/// The sheet is of the size at which the greatest and the least stretch are as far from 1 only where the limit is not
-/// met at the true one, or half way to it: one sharp place does not change the size of all. Cost: about 0.3 s for
-/// 10,000 triangles, three times that where strain is limited.
+/// With `SheetSize::nearest` one sharp place does not change the size of all. Cost: about 0.3 s for 10,000 triangles,
+/// up to three times that for `nearest`.
 ///
 /// On a spherical cap of angular radius α the least possible strain is (k − 1)/(k + 1) with k = α / sin α: no map of
 /// the cap has a smaller ratio k of its greatest scale to its least [Milnor1969]. A `limit` of 1.1 times that is met.
-FlatPanel lay_flat(const atlas::ChartMesh& chart, double limit);
+FlatPanel lay_flat(const atlas::ChartMesh& chart, double limit, SheetSize size = SheetSize::nearest);
 
 }  // namespace tuft::decal

@@ -192,6 +192,7 @@ class Cutting {
         twin_ = atlas::twin_half_edges(film_.mesh);
         while (join_one()) {
         }
+        take_nearest_sizes();
         return in_order();
     }
 
@@ -206,7 +207,7 @@ class Cutting {
                                     const std::vector<std::uint32_t>& glued) const {
         Panel panel;
         panel.chart = atlas::make_chart(film_.mesh, glued, std::move(triangles), 1.0);
-        FlatPanel flat = lay_flat(panel.chart, options_.max_strain);
+        FlatPanel flat = lay_flat(panel.chart, options_.max_strain, SheetSize::balanced);
         if (!flat.within(options_.max_strain)) return std::nullopt;
         if (options_.fits && !options_.fits(panel.chart, flat.flat)) return std::nullopt;
         panel.strain = flat.strain;
@@ -335,6 +336,20 @@ class Cutting {
     /// Sizes of both panels: joining changes them, and what was tried before is tried again.
     std::pair<std::size_t, std::size_t> version_of(const Chain& chain) const {
         return {panels_[chain.a]->chart.faces.size(), panels_[chain.b]->chart.faces.size()};
+    }
+
+    /// Lays the panels out again at the size nearest to the true one.
+    void take_nearest_sizes() {
+        parallel_for(panels_.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                if (!panels_[i]) continue;
+                FlatPanel flat = lay_flat(panels_[i]->chart, options_.max_strain, SheetSize::nearest);
+                if (!flat.within(options_.max_strain)) continue;
+                if (options_.fits && !options_.fits(panels_[i]->chart, flat.flat)) continue;
+                panels_[i]->strain = flat.strain;
+                panels_[i]->flat = std::move(flat.flat);
+            }
+        });
     }
 
     std::vector<Panel> in_order() {

@@ -35,6 +35,7 @@ struct Panel {
 ///    at a vertex miss 2π by more than 0.3, the plane goes through the sharpest such vertex.
 /// 2. Neighbours are joined again along one connected seam, the most visible one first, where the whole still lies flat
 ///    within the limits. In the end no two panels can be joined.
+/// 3. Each is laid out at the size nearest to the true one that meets the limits (lay_flat.h).
 ///
 /// Panels are in the order of their centres' azimuth about the middle of the film, from −y counter-clockwise, then from
 /// above. Throws `Error` where a part cannot be laid flat at all. The same bits for any number of threads.
