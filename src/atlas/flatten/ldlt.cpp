@@ -164,19 +164,29 @@ struct LdltFactor::Rows {
     std::vector<std::uint32_t> column;
     std::vector<double> value;
 
-    Rows(const SymmetricMatrix& matrix, const std::vector<std::uint32_t>& place)
-        : diagonal(place.size()),
-          start(place.size() + 1, 0),
-          column(matrix.entries.size()),
-          value(matrix.entries.size()) {
-        for (std::size_t i = 0; i < place.size(); ++i) diagonal[place[i]] = matrix.diagonal[i];
-        for (const SymmetricMatrix::Entry& e : matrix.entries) ++start[std::min(place[e.row], place[e.column]) + 1];
+    /// `graph`: of the matrix. Entries at one place are one.
+    Rows(const SymmetricMatrix& matrix, const Neighbours& graph, const std::vector<std::uint32_t>& place)
+        : diagonal(place.size()), start(place.size() + 1, 0) {
+        const auto for_each_later = [&](std::size_t v, auto&& f) {
+            for (std::uint32_t i = graph.start[v]; i < graph.start[v + 1]; ++i)
+                if (const std::uint32_t other = place[graph.neighbours[i]]; other > place[v]) f(other);
+        };
+        for (std::size_t v = 0; v < place.size(); ++v) {
+            diagonal[place[v]] = matrix.diagonal[v];
+            for_each_later(v, [&](std::uint32_t) { ++start[place[v] + 1]; });
+        }
         for (std::size_t i = 0; i < place.size(); ++i) start[i + 1] += start[i];
-        std::vector<std::size_t> next(start.begin(), start.end() - 1);
+        column.resize(start.back());
+        value.resize(start.back(), 0);
+        for (std::size_t v = 0; v < place.size(); ++v) {
+            std::size_t at = start[place[v]];
+            for_each_later(v, [&](std::uint32_t other) { column[at++] = other; });
+        }
         for (const SymmetricMatrix::Entry& e : matrix.entries) {
             const auto [row, later] = std::minmax(place[e.row], place[e.column]);
-            column[next[row]] = later;
-            value[next[row]++] = e.value;
+            std::size_t at = start[row];
+            while (column[at] != later) ++at;
+            value[at] += e.value;
         }
     }
 };
@@ -243,15 +253,20 @@ void LdltFactor::assemble(const Rows& rows, const Front& front, Stack& stack) {
 }
 
 bool LdltFactor::compute(SymmetricMatrix matrix, std::span<const Vec2> at) {
-    const Dissection dissection = dissect(neighbours_of(matrix), at);
     const std::size_t n = matrix.diagonal.size();
-    place_.resize(n);
-    for (std::uint32_t i = 0; i < n; ++i) place_[dissection.order[i]] = i;
-    fronts_.clear();
-    for (const Dissection::Part& part : dissection.parts)
-        fronts_.push_back({.first = part.first, .n_pivots = part.n, .n_children = part.n_children});
-    const Rows rows(matrix, place_);
+    Neighbours graph = neighbours_of(matrix);
+    {
+        const Dissection dissection = dissect(graph, at);
+        place_.resize(n);
+        for (std::uint32_t i = 0; i < n; ++i) place_[dissection.order[i]] = i;
+        fronts_.clear();
+        fronts_.reserve(dissection.parts.size());
+        for (const Dissection::Part& part : dissection.parts)
+            fronts_.push_back({.first = part.first, .n_pivots = part.n, .n_children = part.n_children});
+    }
+    const Rows rows(matrix, graph, place_);
     matrix = {};
+    graph = {};
     find_fronts(rows);
     inverse_.resize(n);
     Stack stack;
