@@ -233,12 +233,12 @@ FlatPanel lay_flat(const ChartMesh& chart, double limit, SheetSize size) {
     std::vector<Vec2> scaled = times(flat, balance);
     FlatPanel panel = finished(chart, references, scaled);
     if (panel.strain > limit && atlas::arap_energy(chart, flat) > most) return panel;
-    const StrainLimiter limiter(chart, references);
     if (panel.strain > limit) {
-        limiter.run(scaled, limit);
+        StrainLimiter(chart, references).run(scaled, limit);
         panel = finished(chart, references, std::move(scaled));
     }
     if (!panel.within(limit) || size == SheetSize::balanced) return panel;
+    const StrainLimiter limiter(chart, references);
     // Where the limit is met at a size nearer to the true one too, most of the film is strained less.
     for (const double part : {0.0, 0.5}) {
         std::vector<Vec2> nearer = times(flat, 1 + part * (balance - 1));
