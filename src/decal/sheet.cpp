@@ -24,7 +24,7 @@ constexpr double kStrainPixel = 5e-4;   // metres, of strain maps
 constexpr double kFragment = 0.01;      // of the paint of the piece beyond the seam
 constexpr double kSpeck = 0.1;          // of `least_fragment`
 constexpr double kSpecksOfAll = 0.001;  // of all paint, all specks together
-constexpr double kSeamStep = 5e-4;      // metres between the places of a seam that are looked at
+constexpr double kSeamStep = 1e-4;      // metres, at most, between the places of a seam that are looked at
 constexpr double kBesideSeam = 2e-5;    // metres
 
 /// Panels with what is printed round them.

@@ -81,7 +81,6 @@ TEST_F(Panels, NothingNeededForPaintingScrollsAt1280Times720) {
     }
 }
 
-// The model stays where it is on the screen when another tool is taken: a handle is at the middle of the view's edge.
 // In a panel ten rows high. The layer that a stroke goes onto is among the rows that are seen.
 TEST_F(Panels, ManyLayersLeaveTheJournalAndTheirButtonInReach) {
     std::string script = kBowl + "stroke 46%,58% 54%,60%\nwait-ready\n";
@@ -93,6 +92,7 @@ TEST_F(Panels, ManyLayersLeaveTheJournalAndTheirButtonInReach) {
     EXPECT_EQ(ran.status, 0) << ran.err;
 }
 
+// The model stays where it is on the screen when another tool is taken: a handle is at the middle of the view's edge.
 TEST_F(Panels, LeaveTheViewItsPlaceWhateverTheTool) {
     std::string script = kBowl;
     for (const char* tool : {"brush", "line", "writing", "fill", "mask"})

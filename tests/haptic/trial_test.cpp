@@ -26,7 +26,8 @@ double allowed_step(const DeviceLimits& limits) {
 /// Hair that is lifted at 0.5 m/s loses more than it stored, and the tank ends. What forces on their way will take is
 /// foreseen by the last motion, whose counts of 55 µm on Touch are 0.1 N a period and more with each millisecond.
 double allowed_tap_step(const DeviceLimits& limits, double delay) {
-    return allowed_step(limits) + (limits.name == "touch" ? 0.04 + 80 * delay : 0.0);
+    if (limits.name != "touch") return allowed_step(limits);
+    return delay > 1e-3 ? 0.4 : 0.2 + 40 * delay;
 }
 
 /// `device`: one in turn for each motion, the first motion on the device of this number; negative: all for each.

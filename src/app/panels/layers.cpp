@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <utility>
 
 #include "app/panels/panels.h"
 #include "app/widgets/titles.h"
@@ -68,11 +67,14 @@ void name_field(const LayerParts& s, const Layer& layer) {
     const std::string title = layer_title(s.ui, layer.name);
     std::snprintf(name, sizeof name, "%s", title.c_str());
     ImGui::SetNextItemWidth(-1);
-    const bool appeared = std::exchange(s.layers.list.focus, false);
+    const bool appeared = s.layers.list.focus;
     if (appeared) ImGui::SetKeyboardFocusHere();
     const bool entered = ImGui::InputText("##name", name, sizeof name,
                                           ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
     s.ui.mark("Layer name");
+    // Out of sight it takes no focus: it is scrolled to first.
+    if (appeared && !ImGui::IsItemVisible()) return ImGui::SetScrollHereY();
+    s.layers.list.focus = false;
     if (!entered && (appeared || !ImGui::IsItemDeactivated())) return;
     s.layers.list.renamed = 0;
     // Escape leaves the text as it was.
@@ -219,20 +221,23 @@ void row(const LayerParts& s, const Layer& layer, std::size_t place) {
 
 constexpr const char* kLayersHeight = "height of the rows";
 
-// Rows take half of the panel at most, so that the journal below stays in reach; more of them scroll.
-void begin_list(const LayerParts& s) {
+// Rows take half of the panel at most, so that the journal below stays in reach; more of them scroll. Returns whether
+// any of it is in sight.
+bool begin_list(const LayerParts& s) {
     const float row = s.ui.px(kLayerHeight) + ImGui::GetStyle().ItemSpacing.y;
     const float whole = ImGui::GetStateStorage()->GetFloat(ImGui::GetID(kLayersHeight),
                                                            row * static_cast<float>(s.table.layers.size()));
     const float most = 0.5f * ImGui::GetWindowHeight(), width = ImGui::GetContentRegionAvail().x;
     ImGui::SetNextWindowContentSize(ImVec2(width, 0));  // the scrollbar has room beside the rows
-    ImGui::BeginChild("rows", ImVec2(width + ImGui::GetStyle().ScrollbarSize + s.ui.px(2), std::min(whole, most)));
+    return ImGui::BeginChild("rows",
+                             ImVec2(width + ImGui::GetStyle().ScrollbarSize + s.ui.px(2), std::min(whole, most)));
 }
 
-void end_list() {
+void end_list(bool seen) {
     const float whole = ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y;
     ImGui::EndChild();
-    ImGui::GetStateStorage()->SetFloat(ImGui::GetID(kLayersHeight), whole);
+    // Out of sight no row takes a height.
+    if (seen) ImGui::GetStateStorage()->SetFloat(ImGui::GetID(kLayersHeight), whole);
 }
 
 // Brings the row just drawn into sight where its layer has become the active one. `key`: of the list's state.
@@ -251,9 +256,9 @@ void layers_section(const LayerParts& s) {
     if (all.empty()) return;
     ui.heading("Layers");
     ImGui::BeginDisabled(s.viewing);
-    begin_list(s);
+    const bool seen = begin_list(s);
     const ImGuiID shown = ImGui::GetID("active layer that was shown");
-    for (std::size_t i = all.size(); i-- > 0;) {
+    for (std::size_t i = seen ? all.size() : 0; i-- > 0;) {
         const Layer layer = all[i];
         ImGui::PushID(static_cast<int>(layer.id));
         row(s, layer, i);
@@ -261,7 +266,7 @@ void layers_section(const LayerParts& s) {
         if (layer.id == s.layers.active && s.layers.show_details) details(s, layer, i);
         ImGui::PopID();
     }
-    end_list();
+    end_list(seen);
     if (ui.button("Add a layer", "Strokes on it can be shown, faded and moved apart from the others", 0,
                   all.size() < stroke::kMaxLayers))
         add_layer(s.layers, s.work, s.table, fresh_name(s));

@@ -13,13 +13,13 @@ namespace tuft::atlas {
 namespace {
 
 /// What the steps need of a `Reference`, in 56 bytes in place of 80: a chart has one for each triangle.
-struct LaidTriangle {
+struct FlatTriangle {
     std::array<double, 3> half_cot;
     double base = 0;  ///< from corner `first`, the origin, to the next, along x
     Vec2 apex{0};     ///< the corner after that
     std::uint32_t first = 0;
 
-    explicit LaidTriangle(const Reference& r) : half_cot(r.half_cot) {
+    explicit FlatTriangle(const Reference& r) : half_cot(r.half_cot) {
         while (r.corner[first] != Vec2{0} || r.corner[(first + 1) % 3].y != 0) ++first;
         base = r.corner[(first + 1) % 3].x;
         apex = r.corner[(first + 2) % 3];
@@ -38,19 +38,19 @@ struct LaidTriangle {
 /// first.
 struct Part {
     std::vector<std::array<std::uint32_t, 3>> faces;  ///< vertices of the part
-    std::vector<LaidTriangle> laid;                   ///< [faces]
+    std::vector<FlatTriangle> flat;                   ///< [faces]
     std::vector<std::uint32_t> vertex;                ///< of the chart
     std::size_t n_free = 0;
     double area = 0;
 };
 
 /// Triangles of a chart in their own planes; of no `faces`: all.
-std::vector<LaidTriangle> lay_triangles(const ChartMesh& chart, std::span<const std::uint32_t> faces) {
+std::vector<FlatTriangle> flatten_triangles(const ChartMesh& chart, std::span<const std::uint32_t> faces) {
     const std::size_t n = faces.empty() ? chart.faces.size() : faces.size();
-    std::vector<LaidTriangle> laid;
-    laid.reserve(n);
-    for (std::size_t t = 0; t < n; ++t) laid.emplace_back(reference_triangle(chart, faces.empty() ? t : faces[t]));
-    return laid;
+    std::vector<FlatTriangle> flat;
+    flat.reserve(n);
+    for (std::size_t t = 0; t < n; ++t) flat.emplace_back(reference_triangle(chart, faces.empty() ? t : faces[t]));
+    return flat;
 }
 
 /// All of a chart; its first vertex stays.
@@ -64,7 +64,7 @@ Part whole(const ChartMesh& chart) {
     part.faces = chart.faces;
     for (auto& f : part.faces)
         for (std::uint32_t& v : f) v = v > 0 ? v - 1 : n - 1;
-    part.laid = lay_triangles(chart, {});
+    part.flat = flatten_triangles(chart, {});
     part.area = chart.area;
     return part;
 }
@@ -79,8 +79,8 @@ Part part_of(const ChartMesh& chart, std::span<const std::uint32_t> faces) {
         if (!inside[f])
             for (const std::uint32_t v : chart.faces[f]) slot[v] = kHeld;
     Part part;
-    part.laid = lay_triangles(chart, faces);
-    for (const LaidTriangle& triangle : part.laid) part.area += triangle.area();
+    part.flat = flatten_triangles(chart, faces);
+    for (const FlatTriangle& triangle : part.flat) part.area += triangle.area();
     for (const std::uint32_t f : faces) {
         for (const std::uint32_t v : chart.faces[f])
             if (slot[v] == kNone) {
@@ -112,7 +112,7 @@ SymmetricMatrix stiffness(const Part& part, const std::vector<Vec2>& uv, std::ve
     for (std::size_t t = 0; t < part.faces.size(); ++t)
         for (int k = 0; k < 3; ++k) {
             const auto [i, j] = std::minmax(part.faces[t][k], part.faces[t][(k + 1) % 3]);
-            const double w = part.laid[t].half_cot[k];
+            const double w = part.flat[t].half_cot[k];
             matrix.diagonal[i] += w;
             matrix.diagonal[j] += w;
             if (j < part.n_free)
@@ -151,10 +151,10 @@ Rotation closest_rotation(const std::array<std::uint32_t, 3>& f, const std::arra
 double fit_rotations(const Part& part, const std::vector<Vec2>& uv, std::vector<Vec2>& rhs) {
     std::fill(rhs.begin(), rhs.end(), Vec2(0));
     double energy = 0;
-    for (std::size_t t = 0; t < part.laid.size(); ++t) {
+    for (std::size_t t = 0; t < part.flat.size(); ++t) {
         const auto& f = part.faces[t];
-        const std::array<double, 3>& half_cot = part.laid[t].half_cot;
-        const std::array<Vec2, 3> corner = part.laid[t].corners();
+        const std::array<double, 3>& half_cot = part.flat[t].half_cot;
+        const std::array<Vec2, 3> corner = part.flat[t].corners();
         const auto [c, s, e] = closest_rotation(f, corner, half_cot, uv);
         energy += e;
         for (int k = 0; k < 3; ++k) {
@@ -214,9 +214,9 @@ double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& op
         if (step == 0) {
             SymmetricMatrix matrix = stiffness(part, at, pinned);
             const bool large = part.faces.size() > kLarge;
-            if (large) part.laid = {};
+            if (large) part.flat = {};
             if (!factor.compute(std::move(matrix), moving)) break;
-            if (large) part.laid = lay_triangles(chart, faces);
+            if (large) part.flat = flatten_triangles(chart, faces);
         }
         for (std::size_t v = 0; v < part.n_free; ++v) rhs[v] += pinned[v];
         std::copy_n(rhs.begin(), part.n_free, moving.begin());

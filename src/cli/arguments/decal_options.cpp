@@ -95,7 +95,8 @@ CLI::App* add_decals(CLI::App& app, Decals& d) {
     s->add_option(
          "--least-fragment", d.least_fragment_mm2,
          "leave out what a cut parts from a piece with 100 times its paint, where it has less paint than this, "
-         "and specks of less than a tenth of it, in mm2 (default: 10; 0: lay them)")
+         "and specks of less than a tenth of it where all together have less than a thousandth of the paint, in mm2 "
+         "(default: 10; 0: lay them)")
         ->check(number_in(0, 1e6));
     s->add_option_function<std::string>(
          "--page", [&d](const std::string& text) { read_page(d, text); },

@@ -340,16 +340,22 @@ class Cutting {
 
     /// Lays the panels out again at the size nearest to the true one.
     void take_nearest_sizes() {
-        parallel_for(panels_.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                if (!panels_[i]) continue;
-                FlatPanel flat = lay_flat(panels_[i]->chart, options_.max_strain, SheetSize::nearest);
-                if (!flat.within(options_.max_strain)) continue;
-                if (options_.fits && !options_.fits(panels_[i]->chart, flat.flat)) continue;
-                panels_[i]->strain = flat.strain;
-                panels_[i]->flat = std::move(flat.flat);
-            }
-        });
+        // In batches, so that progress is reported and a stop is heard.
+        const auto batch = static_cast<std::size_t>(thread_count());
+        for (std::size_t first = 0; first < panels_.size(); first += batch) {
+            report(options_.progress, "sizes", static_cast<double>(first) / static_cast<double>(panels_.size()));
+            parallel_for(std::min(batch, panels_.size() - first), 1, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = first + begin; i < first + end; ++i)
+                    if (panels_[i]) take_nearest_size(*panels_[i]);
+            });
+        }
+    }
+    void take_nearest_size(Panel& panel) const {
+        FlatPanel flat = lay_flat(panel.chart, options_.max_strain, SheetSize::nearest);
+        if (!flat.within(options_.max_strain)) return;
+        if (options_.fits && !options_.fits(panel.chart, flat.flat)) return;
+        panel.strain = flat.strain;
+        panel.flat = std::move(flat.flat);
     }
 
     std::vector<Panel> in_order() {

@@ -264,10 +264,10 @@ struct TouchingPart {
 /// `own`: section of the strip; `other`: of the neighbour at the same part of its hair, above the surface.
 TouchingPart touching_part(const Cut& own, const Cut& other) {
     const Vec3 broad = own.broad();
-    const Vec2 flat(broad), way = other.centre - own.centre;
-    const double half = Cut::kStripChord * glm::length(flat), distance = glm::length(way);
+    const Vec2 flat(broad), to_neighbour = other.centre - own.centre;
+    const double half = Cut::kStripChord * glm::length(flat), distance = glm::length(to_neighbour);
     if (!(half > 1e-9) || !(distance > 1e-9)) return {};
-    const double along = glm::dot(way, flat) / glm::length(flat), touching = std::max(own.overlap(), 0.0);
+    const double along = glm::dot(to_neighbour, flat) / glm::length(flat), touching = std::max(own.overlap(), 0.0);
     const double end = touching / std::max(touching - other.overlap(), 1e-12) * std::abs(along) / half;
     const double lies = glm::length(flat) / glm::length(broad);
     const double part = smooth_step((lies - kStandsAside) / (kLiesBeside - kStandsAside)) *
@@ -276,7 +276,7 @@ TouchingPart touching_part(const Cut& own, const Cut& other) {
 }
 
 /// The neighbour that an outermost strip would have on its free side, by what is on its other side.
-Cut beyond(const Cut& own, const Cut& inner) {
+Cut extrapolate_cut(const Cut& own, const Cut& inner) {
     Cut cut = own;
     cut.centre += own.centre - inner.centre;
     cut.z = own.half_height() - 2 * own.overlap() + inner.overlap();
@@ -289,18 +289,20 @@ class RowLanding {
     RowLanding(Recycled<Trail>& trails, std::span<const Stretch> stretches, std::span<const BranchSurface> surfaces)
         : trails_(trails), stretches_(stretches), surfaces_(surfaces), most_(surfaces.size(), -1.0) {
         for (const Trail& trail : trails)
-            for (const Cut& cut : trail.cuts) most(trail.branch) = std::max(most(trail.branch), cut.overlap());
+            for (const Cut& cut : trail.cuts)
+                largest_overlap(trail.branch) = std::max(largest_overlap(trail.branch), cut.overlap());
     }
 
     /// Trail k on the side of a neighbour.
     void bound(std::size_t k, int neighbour) {
-        const bool lands = most(neighbour) >= 0;
-        bound(k, neighbour, lands ? 1 : kFarthest, lands ? most(neighbour) / most_of(k) : 0,
+        // Also beside a part of the neighbour that touches: it goes over into its own width as that lands.
+        bound(k, neighbour, kFarthest, std::max(largest_overlap(neighbour), 0.0) / overlap_of(k),
               [](const Cut&, const Cut& beside) { return beside; });
     }
     /// Trail k, an outermost one, on its free side.
     void bound_beyond(std::size_t k, int inner) {
-        if (most(inner) >= 0) bound(k, inner, 1, most_of(k) / std::max(most(inner), 1e-12), beyond);
+        if (largest_overlap(inner) >= 0)
+            bound(k, inner, 1, overlap_of(k) / std::max(largest_overlap(inner), 1e-12), extrapolate_cut);
     }
 
   private:
@@ -310,8 +312,8 @@ class RowLanding {
         const double length = surface.from_tip(surface.end()),
                      own_length = surfaces_[static_cast<std::size_t>(trails_[k].branch)].from_tip(1e9);
         // Hair of other lengths does not lie side by side at equal parts.
-        const double differ = smooth_step(std::abs(length - own_length) / (kOfOneLength * length));
-        const double landed = std::max(smooth_step(landed_part / kLanded), differ);
+        const double length_difference = smooth_step(std::abs(length - own_length) / (kOfOneLength * length));
+        const double landed = std::max(smooth_step(landed_part / kLanded), length_difference);
         if (landed >= 1) return;
         for (std::size_t i = 0; i < trails_[k].cuts.size(); ++i) {
             Cut& own = trails_[k].cuts[i];
@@ -322,8 +324,8 @@ class RowLanding {
             (to.side < 0 ? own.reach.x : own.reach.y) = std::lerp(std::min(to.over_half, farthest), 1.0, landed);
         }
     }
-    double& most(int branch) { return most_[static_cast<std::size_t>(branch)]; }
-    double most_of(std::size_t k) { return std::max(most(trails_[k].branch), 1e-12); }
+    double& largest_overlap(int branch) { return most_[static_cast<std::size_t>(branch)]; }
+    double overlap_of(std::size_t k) { return std::max(largest_overlap(trails_[k].branch), 1e-12); }
 
     Recycled<Trail>& trails_;
     std::span<const Stretch> stretches_;

@@ -25,7 +25,8 @@ struct Cut {
     /// Metres, (u, v), along the hair: by how much a strip between spines of other lengths goes aslant and bends to its
     /// edges, see `bent`.
     Vec2 slant{0}, bow{0};
-    /// How far a strip touches from its middle towards −broad and +broad, over its half width there.
+    /// How far a strip touches from its middle towards −broad and +broad, over its half width there. Negative where all
+    /// that touches lies beyond the middle.
     Vec2 reach{1, 1};
 
     double half_height() const { return std::sqrt(a * a * e.z * e.z + b * b * m.z * m.z); }

@@ -99,8 +99,19 @@ Recycled<StripPlace> strip_places(std::span<const Vec2> strip, int pieces) {
     return places;
 }
 
+/// Corners of the part of a strip that touches, see Cut::reach.
+Recycled<Vec2> touching_part(std::span<const Vec2> strip, const Vec2& reach) {
+    Recycled<Vec2> part;
+    part.reserve(strip.size());
+    for (const Vec2& c : strip) {
+        const double x = c.x * (c.x < 0 ? reach.x : reach.y);
+        part.push_back({std::max(std::min(x, reach.y * Cut::kStripChord), -reach.x * Cut::kStripChord), c.y});
+    }
+    return part;
+}
+
 /// The same of a strip: its corners at the scale at which it meets the surface when the ellipse does, cut by it.
-/// `places`: of `strip`, in pieces where the cut is bent.
+/// `places`: of the part of `strip` that touches, in pieces where the cut is bent.
 void add_strip_shadow(const Cut& cut, std::span<const Vec2> strip, std::span<const StripPlace> places,
                       Recycled<Vec2>& corners) {
     const Vec3 broad = cut.broad(), thick = cut.thick();
@@ -117,18 +128,13 @@ void add_strip_shadow(const Cut& cut, std::span<const Vec2> strip, std::span<con
     const std::size_t before = corners.size(), n = places.size();
     corners.resize(before + 2 * n);  // as many as there can be
     Vec2* to = corners.data() + before;
-    const bool whole = cut.reach == Vec2(1);
-    const auto touching = [&](const StripPlace& c) {
-        return whole ? c : strip_place({c.at.x * (c.at.x < 0 ? cut.reach.x : cut.reach.y), c.at.y});
-    };
-    StripPlace at = touching(places[0]);
-    double p = height(at);
+    const double first = height(places[0]);
+    double p = first;
     for (std::size_t k = 0; k < n; ++k) {
-        const StripPlace next = touching(places[k + 1 < n ? k + 1 : 0]);
-        const double q = height(next);
-        if (p <= 0) *to++ = point(at);
-        if ((p <= 0) != (q <= 0)) *to++ = glm::mix(point(at), point(next), p / (p - q));
-        at = next;
+        const StripPlace& next = places[k + 1 < n ? k + 1 : 0];
+        const double q = k + 1 < n ? height(next) : first;
+        if (p <= 0) *to++ = point(places[k]);
+        if ((p <= 0) != (q <= 0)) *to++ = glm::mix(point(places[k]), point(next), p / (p - q));
         p = q;
     }
     if (to == corners.data() + before) *to++ = centre;  // it only just touches
@@ -196,13 +202,17 @@ Vec2 forward_direction(const Recycled<Cut>& cuts) {
 void Loops::add(std::span<const Cut> cuts, std::span<const Vec2> strip) {
     corners.reserve(corners.size() + cuts.size() * (strip.empty() ? kDirections + 2 : strip.size() + 2 * kBentPieces));
     first.reserve(first.size() + cuts.size());
-    Recycled<StripPlace> straight, in_pieces;
+    Recycled<StripPlace> straight, in_pieces, bounded;
     for (const Cut& cut : cuts) {
         if (strip.empty()) {
             add_shadow(cut, corners);
         } else {
-            Recycled<StripPlace>& places = cut.is_bent() ? in_pieces : straight;
-            if (places.empty()) places = strip_places(strip, cut.is_bent() ? kBentPieces : 1);
+            const int pieces = cut.is_bent() ? kBentPieces : 1;
+            Recycled<StripPlace>& places = cut.reach != Vec2(1) ? bounded : cut.is_bent() ? in_pieces : straight;
+            if (&places == &bounded)
+                bounded = strip_places(touching_part(strip, cut.reach), pieces);
+            else if (places.empty())
+                places = strip_places(strip, pieces);
             add_strip_shadow(cut, strip, places, corners);
         }
         first.push_back(corners.size());

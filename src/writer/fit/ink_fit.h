@@ -44,10 +44,10 @@ struct FitResult {
 ///
 /// Each try draws the path on a plane (`stroke::plane_ink`) in the target's cells. A wrong cell (missing +, extra −)
 /// goes to the left or right of its nearest station, as area over station spacing; extra ink that another station, more
-/// than 60 units along the path, covered first lifts that one, and so does extra ink beyond the head for any but the
-/// first; other cells beyond an end change the length. Smoothed over two stations, the path moves by 0.6 · ½ (left −
-/// right) and the half width grows by 0.5 · ½ (left + right) less the kick. Half widths stay below 16 units + the
-/// distance to the nearer tip. Cost: 0.1 ms per pose. Deterministic.
+/// than 60 units along the path, covered first lifts that one. Extra ink beyond the head that another station than the
+/// first covered first lifts that station too; other cells beyond an end change the length. Smoothed over two stations,
+/// the path moves by 0.6 · ½ (left − right) and the half width grows by 0.5 · ½ (left + right) less the kick. Half
+/// widths stay below 16 units + the distance to the nearer tip. Cost: 0.1 ms per pose. Deterministic.
 ///
 /// The best try is that of the largest score B / (B + Σ w d / 4): B cells are covered rightly, and a wrong cell of
 /// weight w lies d ≤ 24 units on the wrong side of the edge. A lump counts more than a rim of the same area. Where the

@@ -37,10 +37,15 @@ std::string sized(const std::string& brush, double factor) {
 }
 
 Message too_coarse(const std::string& brush, const stroke::LineWidths& widths, double side) {
-    const auto mm = [](double metres) { return fmt::format("{:.2g}", metres * 1e3); };
+    const auto mm = [](double metres) { return fmt::format("{:.4g}", metres * 1e3); };
+    // Two digits, upwards, so that the size that is named will do.
+    const auto at_least = [](double metres) {
+        const double unit = std::pow(10, std::floor(std::log10(metres * 1e3)) - 1);
+        return fmt::format("{:.6g}", std::ceil(metres * 1e3 / unit - 1e-9) * unit);
+    };
     return Message(
         "characters of {} mm are too small for {}, whose finest line is {} mm wide: it writes characters from {} mm on",
-        mm(side), brush, mm(widths.least()), mm(widths.least() * kSide / kBlot));
+        mm(side), brush, mm(widths.least()), at_least(widths.least() * kSide / kBlot));
 }
 
 std::uint64_t hash_of(const std::vector<Station>& s, std::uint64_t seed) {
