@@ -15,6 +15,7 @@ namespace tuft::writer {
 namespace {
 
 constexpr double kStraightOn = 45 * kDegree;  // turn at a junction up to which two pieces are one stroke
+constexpr double kHead = 1.5;                 // half widths of a stroke: a bend so near to its end is no corner
 constexpr double kReach = 28;                 // units beyond a junction over which a direction is taken
 constexpr double kHook = 0.35;                // of the run before: a hook is at most so long
 constexpr double kLongestHook = 150;          // units
@@ -79,7 +80,10 @@ class Runs {
   public:
     explicit Runs(const Skeleton& s) : s_(s), partner_(2 * s.pieces.size(), kNoEnd) {
         for (std::size_t n = 0; n < s.nodes.size(); ++n)
-            if (s.nodes[n].n_pieces > 2) pair_at(n);
+            if (s.nodes[n].n_pieces > 2)
+                pair_at(n);
+            else if (s.nodes[n].n_pieces == 2)
+                pair_head(n);
     }
 
     std::vector<Run> all() const {
@@ -94,12 +98,33 @@ class Runs {
   private:
     static constexpr std::size_t kNoEnd = static_cast<std::size_t>(-1);
 
-    void pair_at(std::size_t node) {
+    std::vector<PieceEnd> ends_at(std::size_t node) const {
         std::vector<PieceEnd> ends;
         for (std::size_t p = 0; p < s_.pieces.size(); ++p) {
             if (s_.pieces[p].from == node) ends.push_back({p, false});
             if (s_.pieces[p].to == node) ends.push_back({p, true});
         }
+        return ends;
+    }
+    static std::size_t index(const PieceEnd& e) { return 2 * e.piece + e.tail; }
+    void pair(std::size_t a, std::size_t b) {
+        if (partner_[a] == kNoEnd && partner_[b] == kNoEnd) partner_[a] = b, partner_[b] = a;
+    }
+
+    /// At a corner: a slanted head belongs to its stroke, which the brush entered aslant.
+    void pair_head(std::size_t node) {
+        const std::vector<PieceEnd> ends = ends_at(node);
+        if (ends.size() != 2 || ends[0].piece == ends[1].piece) return;
+        const auto is_head = [&](const PieceEnd& e, const PieceEnd& stroke) {
+            const Piece &head = s_.pieces[e.piece], &rest = s_.pieces[stroke.piece];
+            return s_.nodes[e.tail ? head.from : head.to].n_pieces == 1 && head.length() < rest.length() &&
+                   head.length() < kHead * (stroke.tail ? rest.half_to : rest.half_from);
+        };
+        if (is_head(ends[0], ends[1]) || is_head(ends[1], ends[0])) pair(index(ends[0]), index(ends[1]));
+    }
+
+    void pair_at(std::size_t node) {
+        const std::vector<PieceEnd> ends = ends_at(node);
         struct Pair {
             double turn;
             std::size_t a, b;
@@ -108,10 +133,9 @@ class Runs {
         for (std::size_t a = 0; a < ends.size(); ++a)
             for (std::size_t b = a + 1; b < ends.size(); ++b)
                 if (const double turn = turn_between(-leaving(s_, ends[a]), leaving(s_, ends[b])); turn < kStraightOn)
-                    pairs.push_back({turn, 2 * ends[a].piece + ends[a].tail, 2 * ends[b].piece + ends[b].tail});
+                    pairs.push_back({turn, index(ends[a]), index(ends[b])});
         std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.turn < b.turn; });
-        for (const Pair& p : pairs)
-            if (partner_[p.a] == kNoEnd && partner_[p.b] == kNoEnd) partner_[p.a] = p.b, partner_[p.b] = p.a;
+        for (const Pair& p : pairs) pair(p.a, p.b);
     }
 
     Run run_from(std::size_t end, std::vector<std::uint8_t>& used) const {

@@ -29,7 +29,7 @@ using StrokeOrder = std::vector<std::vector<PieceUse>>;
 /// for 橫折, 橫撇, 豎折, 豎提, 撇折, 撇點, or where a short one is the hook of the other; a box is 豎, 橫折, 橫. Order:
 /// parts of the character that a gap divides from left to right, else from the top down, each by these rules; a middle
 /// stroke that is taller than both beside it first; within a part 橫 before what crosses it, 撇 before 捺, and what
-/// begins higher.
+/// begins higher. A bend within 1.5 half widths of a free end is the slanted head of its stroke.
 StrokeOrder order_by_rules(const Skeleton& skeleton);
 
 /// Reads an order, such as "1+2 -4 3": strokes by blanks or commas, pieces by "+", counted from 1, "-" for a piece that
