@@ -194,30 +194,6 @@ TEST(Trial, WhatCameInBeforeAContactGivesNothingBack) {
     EXPECT_GT(r.contacts, 2u);
 }
 
-/// Random hand `number` as above, whose root is knocked over by 5 mm when its motion begins, from upright to the lean.
-TrialReport run_knocked_hand(std::uint64_t number, HandMotion motion, const TrialModel& edge) {
-    const brush::Tuft tuft = brush::make_tuft(brush::load_preset("wolf-medium"));
-    const RandomHand hand(number, tuft.preset);
-    const HandPath leaning = hand_path(motion, edge.place, tuft.preset, hand.path),
-                   upright = hand_path(HandMotion::taps, edge.place, tuft.preset, hand.path);
-    const auto at = [&](double time) { return time < 1 ? upright(0) : leaning(time); };
-    const HandPath knocked = [&](double time) {
-        constexpr double h = 1e-4;  // s, a step of the simulated arm
-        HandTarget target = at(time);
-        target.velocity = (at(time + h).position - at(time - h).position) / (2 * h);
-        return target;
-    };
-    return run_trial(tuft, *edge.surface, knocked, hand.options);
-}
-
-// A hand that is thrown over a wet tip at the car's edge and stops there: the root gives back 21 µJ of its motion, and
-// the counts of Touch stir the coupling. A tank that began each contact with 30 µJ besides gave back 1.2 µJ.
-TEST(Trial, AHandThatStopsOverAWetTipGetsNothingBack) {
-    const TrialReport r = run_knocked_hand(2376, HandMotion::drag, load_trial_model("edge"));
-    EXPECT_GE(r.least_energy, -kMicrojoule);
-    EXPECT_GT(r.contacts, 1u);
-}
-
 // Hair that bursts off the bowl leaves the spring of the coupling stretched by what was faded: a contact's end once
 // filled the tank with it, and gave back 2 mJ in steps of 2 N.
 TEST(Trial, ASpringThatTheFadeStretchedGivesNothingBack) {
