@@ -73,7 +73,9 @@ void hex_field(Session& s) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(s.ui.tr("Hex"));
     ImGui::SameLine();
-    ImGui::SetNextItemWidth(s.ui.px(73));
+    constexpr float kMode = 36, kGap = 4;  // beside a scrollbar the field gives way to them
+    ImGui::SetNextItemWidth(
+        std::clamp(ImGui::GetContentRegionAvail().x - 3 * s.ui.px(kMode + kGap), s.ui.px(48), s.ui.px(73)));
     const bool entered = ImGui::InputText("##hex", text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue);
     s.ui.mark("Hex");
     if (ImGui::IsItemActive() || entered) c.hex = text;
@@ -81,8 +83,8 @@ void hex_field(Session& s) {
     static constexpr std::pair<ColourSliders, const char*> modes[] = {
         {ColourSliders::rgb, "RGB"}, {ColourSliders::hsv, "HSV"}, {ColourSliders::lab, "Lab"}};
     for (const auto& [mode, name] : modes) {
-        ImGui::SameLine(0, s.ui.px(4));
-        if (s.ui.choice(name, c.sliders == mode, nullptr, 36)) c.sliders = mode;
+        ImGui::SameLine(0, s.ui.px(kGap));
+        if (s.ui.choice(name, c.sliders == mode, nullptr, kMode)) c.sliders = mode;
     }
 }
 
