@@ -62,6 +62,10 @@ TEST_F(Write, MissingCharactersAndWrongOptionsAreOneLine) {
     }
     EXPECT_EQ(written("--text ' '").status, 2);
     EXPECT_EQ(written("--text 永 --size big").status, 2);
+    const Ran large = written("--text 永 --size 5000");
+    EXPECT_EQ(large.status, 2);
+    EXPECT_EQ(large.error_lines(), 1) << large.err;
+    EXPECT_NE(large.err.find("5000 mm"), std::string::npos) << large.err;
 }
 
 }  // namespace

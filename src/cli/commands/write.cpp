@@ -94,9 +94,20 @@ void note_size(const writer::Text& text, const Write& a, Console& console) {
                         brush, side, writer::kMedianStroke / writer::kSide * side, *fits));
 }
 
+/// Throws where no character can lie on the model, round which a surface is hardly four diagonals long.
+void check_side(double side, const stroke::Model& model) {
+    constexpr double kMostDiagonals = 4;
+    const double diagonal = model.mesh->bounds.diagonal();
+    if (side > kMostDiagonals * diagonal)
+        throw UsageError(
+            fmt::format("characters of {:.4g} mm find no room on a model of {:.4g} mm from corner to corner",
+                        side / kMillimetre, diagonal / kMillimetre));
+}
+
 std::optional<PlacedDrawing> write_in_lines(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
                                             writer::Text text, const Write& a, Console& console) {
     text.layout.side = side_in_lines(text, model, a);
+    check_side(text.layout.side, model);
     note_size(text, a, console);
     writer::append_lines(strokes, text, hand_of(a), console.progress());
     // The strokes have the size that their brush was fitted at: it stays.
@@ -119,6 +130,7 @@ std::optional<PlacedDrawing> write_along(std::vector<stroke::JournalEntry>& stro
     double side = std::min(kPartOfPath * on.path.length() / whole, kPartOfHeight * model.mesh->bounds.diagonal());
     if (a.place.width_mm > 0) side = a.place.width_mm * kMillimetre / whole;
     if (a.size_mm > 0) side = a.size_mm * kMillimetre;
+    check_side(side, model);
     text.layout.side = side;
     note_size(text, a, console);
     writer::append_along(strokes, text, on.path, on.middle, hand_of(a), console.progress());
