@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <imgui.h>
+#include <unistd.h>
 
 #include <fstream>
 
@@ -43,7 +44,7 @@ TEST_F(Feed, KeysOutsideTheTableAreHarmless) {
 }
 
 std::string error_of(const std::string& text) {
-    const std::string path = testing::TempDir() + "/tuft_script_test.txt";
+    const std::string path = testing::TempDir() + "/tuft_script_test_" + std::to_string(getpid()) + ".txt";
     std::ofstream(path) << text;
     try {
         parse_script(path);
@@ -54,7 +55,7 @@ std::string error_of(const std::string& text) {
 }
 
 TEST(ScriptParse, ReadsPlacesQuotesAndComments) {
-    const std::string path = testing::TempDir() + "/tuft_script_good.txt";
+    const std::string path = testing::TempDir() + "/tuft_script_good_" + std::to_string(getpid()) + ".txt";
     std::ofstream(path) << "# a comment\n\nstroke 10,20 30%,40%,0.5  # more\nclick \"Frame all\"\n";
     const auto commands = parse_script(path);
     ASSERT_EQ(commands.size(), 2u);

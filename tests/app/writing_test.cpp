@@ -1,6 +1,7 @@
 #include "app/document/writing.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <set>
@@ -142,8 +143,8 @@ Writing roundel(double width) {
 
 /// Three colours, one of them translucent and one under a gradient to another: nearer to each other than to the
 /// pigments, so that they are mixed otherwise together than one after the other.
-std::string flag(const std::string& folder) {
-    const std::string file = folder + "/flag.svg";
+std::string flag() {
+    const std::string file = testing::TempDir() + "/tuft_flag_" + std::to_string(getpid()) + ".svg";
     std::ofstream(file) << "<svg xmlns='http://www.w3.org/2000/svg' width='60mm' viewBox='0 0 60 30'><linearGradient "
                            "id='g'><stop stop-color='#1b6f5a'/><stop offset='1' stop-color='#d3ab4c'/></linearGradient>"
                            "<path fill='#bd3b25' d='M0 0 H20 V30 H0 Z'/><path fill='url(#g)' d='M20 0 H40 V30 H20 Z'/>"
@@ -153,7 +154,7 @@ std::string flag(const std::string& folder) {
 }
 
 TEST(Writing, OfSeveralColoursComesInThemAndOfOneInTheChosenInk) {
-    const std::string file = flag(testing::TempDir());
+    const std::string file = flag();
     Writing w = read_writing(file);
     EXPECT_TRUE(w.in_colours());
     EXPECT_NEAR(w.form().width, 0.060, 1e-9);
@@ -165,7 +166,7 @@ TEST(Writing, OfSeveralColoursComesInThemAndOfOneInTheChosenInk) {
     EXPECT_NE(place_words(w, at).find("--areas mask"), std::string::npos);
     w.own_ink = false;
     EXPECT_NE(place_words(w, at).find("--areas brush"), std::string::npos);
-    const std::string capitals = testing::TempDir() + "/FLAG.SVG";
+    const std::string capitals = testing::TempDir() + "/TUFT_FLAG_" + std::to_string(getpid()) + ".SVG";
     std::filesystem::copy_file(file, capitals, std::filesystem::copy_options::overwrite_existing);
     EXPECT_TRUE(read_writing(capitals).in_colours());
     std::filesystem::remove(capitals);
@@ -193,7 +194,7 @@ TEST(Writing, ItsSketchIsItsLinesOrTheOutlinesOfItsAreasInAUnitSquare) {
         EXPECT_NEAR(box.lo.y, 0.5 - half_height, kChord);
         EXPECT_NEAR(box.hi.y, 0.5 + half_height, kChord);
     };
-    const std::string file = flag(testing::TempDir());
+    const std::string file = flag();
     const auto areas = read_sketch(file);
     EXPECT_EQ(areas.size(), 4u) << "three shapes and a stroke";
     expect_box(box_of(areas), 0, 0.25);

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cmath>
@@ -102,7 +103,7 @@ TEST(Units, ConvertsTheNamesPeopleUse) {
 class Files : public testing::Test {
   protected:
     void SetUp() override {
-        folder_ = std::filesystem::path(testing::TempDir()) / "tuft_files_test";
+        folder_ = std::filesystem::path(testing::TempDir()) / ("tuft_files_" + std::to_string(getpid()));
         std::filesystem::create_directories(folder_);
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }

@@ -1,6 +1,7 @@
 #include "ink/composite/filament.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -78,7 +79,8 @@ TEST(Filament, TheChoiceIsTheOptimumOverAllAssignments) {
 }
 
 TEST(Filament, FilesAreReadAndRefusedWithTheirLine) {
-    const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / "tuft_filaments.toml";
+    const std::filesystem::path path =
+        std::filesystem::path(::testing::TempDir()) / ("tuft_filaments_" + std::to_string(getpid()) + ".toml");
     const auto read = [&](const std::string& text) {
         std::ofstream(path) << text;
         return load_filaments(path);

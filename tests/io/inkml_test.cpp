@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <bit>
 #include <cmath>
@@ -357,7 +358,7 @@ TEST(Inkml, WritesForPeopleWhatItReads) {
             t.samples.push_back(s);
         }
     }
-    const auto path = std::filesystem::temp_directory_path() / "tuft_inkml_test.inkml";
+    const auto path = std::filesystem::temp_directory_path() / ("tuft_inkml_" + std::to_string(getpid()) + ".inkml");
     write_inkml(path, traces, "Five <strokes>", Digits::rounded);
     const auto back = read_inkml(path);
     std::filesystem::remove(path);

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -36,7 +37,8 @@ std::vector<stroke::JournalEntry> mixing() {
 
 TEST(Palette, ComesBackFromAProjectWithoutAReplay) {
     const stroke::Model model = stroke::make_palette();  // any model will do
-    const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "tuft_palette.tuft";
+    const std::filesystem::path file =
+        std::filesystem::path(testing::TempDir()) / ("tuft_palette_" + std::to_string(getpid()) + ".tuft");
     stroke::Document painting(model);
     for (const stroke::JournalEntry& s : mixing()) painting.paint(s);
     const std::uint64_t last = painting.journal().entries().back().id;
@@ -71,7 +73,8 @@ TEST(Palette, ComesBackFromAProjectWithoutAReplay) {
 
 TEST(Palette, IsOneMoreThanTheMostLayers) {
     const stroke::Model model = stroke::make_palette();
-    const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "tuft_palette_layers.tuft";
+    const std::filesystem::path file =
+        std::filesystem::path(testing::TempDir()) / ("tuft_palette_layers_" + std::to_string(getpid()) + ".tuft");
     stroke::Document painting(model);
     painting.paint(mixing()[0]);
     const stroke::LayerTexels palette = stroke::all_canvases(painting).back();

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <numbers>
@@ -115,7 +116,8 @@ TEST(SvgImage, FillsItsRectangleAsItsRatioSays) {
 }
 
 TEST(SvgImage, AFileLiesInTheDrawingsFolder) {
-    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "svg_image_test";
+    const std::filesystem::path folder =
+        std::filesystem::path(testing::TempDir()) / ("tuft_svg_image_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder / "in");
     const std::vector<unsigned char> bytes = png();
     for (const char* name : {"in/a b.png", "out.png"}) write_file(folder / name, bytes.data(), bytes.size());

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -36,7 +37,7 @@ TEST(Writer, FitIsTheSameForAnyNumberOfThreadsAndFromTheCache) {
     const auto one = Writer(options()).write(text);
     set_thread_count(4);
     WriterOptions cached = options();
-    const auto folder = std::filesystem::path(testing::TempDir()) / "tuft-fit-cache";
+    const auto folder = std::filesystem::path(testing::TempDir()) / ("tuft-fit-cache-" + std::to_string(getpid()));
     std::filesystem::remove_all(folder);
     cached.cache = DiskCache(folder);
     Writer first(cached), second(cached);

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <string>
@@ -60,7 +61,7 @@ TEST(KanjiSvg, StrokesHaveTheirTypeAndTheSquareOf109) {
 
 // KanjiVG's folder has other forms of characters beside them. They are no fonts.
 TEST(KanjiSvg, AFolderWithOtherFormsOfCharactersIsRead) {
-    const auto folder = std::filesystem::path(testing::TempDir()) / "tuft-kanjivg";
+    const auto folder = std::filesystem::path(testing::TempDir()) / ("tuft-kanjivg-" + std::to_string(getpid()));
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
     const std::string one = "<svg><path d='M10,54 L98,54'/></svg>", other = "<svg><path d='M54,10 L54,98'/></svg>";
