@@ -230,7 +230,7 @@ TEST_F(WritingOnModel, MirroredTurnedAndSmallInAPlateItIsTheSame) {
 }
 
 TEST_F(WritingOnModel, InItsColoursItIsTheSame) {
-    Writing w = read_writing(flag(folder_));
+    Writing w = read_writing(flag());
     w.scale = 0.8;
     w.turn = 0.3;
     w.mirrored = true;
