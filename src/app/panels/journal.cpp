@@ -31,8 +31,8 @@ template <class Place>
 void draw_path(const JournalParts& s, const StrokeLine& line, float size, const Place& place) {
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const unsigned colour = colour_of(s, line);
-    for (std::size_t i = 1; i < line.path.size(); ++i) {
-        const Vec3f &a = line.path[i - 1], &b = line.path[i];
+    for (std::size_t i = 1; i < line.path.points.size(); ++i) {
+        const Vec3f &a = line.path.points[i - 1], &b = line.path.points[i];
         const ImVec2 from = place(a), to = place(b);
         const float width = 1.0f + 0.055f * size * (a.z + b.z);
         draw->AddLine(from, to, colour, width);
@@ -83,21 +83,21 @@ struct GroupPicture {
     double longest = 0;  // stroke, metres
 
     Vec2 in_plane(std::size_t i, const Vec3f& p) const {
-        return frames[i].at(lines[i]->path_centre + lines[i]->path_span * (Vec2(p) - 0.5));
+        return frames[i].at(lines[i]->path.centre + lines[i]->path.span * (Vec2(p) - 0.5));
     }
 };
 
 GroupPicture picture_of(const Lines& lines) {
     GroupPicture picture;
     std::copy_if(lines.begin(), lines.end(), std::back_inserter(picture.lines),
-                 [](const StrokeLine* l) { return l->flat && !l->path.empty(); });
+                 [](const StrokeLine* l) { return l->path.flat && !l->path.points.empty(); });
     picture.frames = frames_of(picture.lines);
     for (std::size_t i = 0; i < picture.lines.size();) {
         Box grown = picture.box;
         std::size_t next = i;
         for (; next < picture.lines.size() && picture.frames[next].origin == picture.frames[i].origin; ++next) {
-            for (const Vec3f& p : picture.lines[next]->path) grown.add(Vec3(picture.in_plane(next, p), 0));
-            picture.longest = std::max(picture.longest, picture.lines[next]->path_span);
+            for (const Vec3f& p : picture.lines[next]->path.points) grown.add(Vec3(picture.in_plane(next, p), 0));
+            picture.longest = std::max(picture.longest, picture.lines[next]->path.span);
         }
         if (i > 0 && std::max(grown.size().x, grown.size().y) > kThumbnailSpan * picture.longest) {
             picture.lines.resize(i);

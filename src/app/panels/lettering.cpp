@@ -170,12 +170,13 @@ void lettering_panel(Session& s) {
     if (!l.wanted.glyphs.empty() && l.wanted.like.empty())
         ui.toggle("To their outlines", l.fit,
                   "Strokes are fitted until their ink covers the outlines that the source states");
-    ui.toggle("Snap", s.tools.snap, "To the plane of symmetry and level with other drawings; Ctrl places it freely");
+    ui.toggle("Snap", s.tools.place.snaps,
+              "To the plane of symmetry and level with other drawings; Ctrl places it freely");
     ImGui::SameLine();
-    ui.toggle("mm", s.tools.shows_place, "Place in millimetres");
-    if (s.tools.shows_place) place_fields(ui, s.tools);
+    ui.toggle("mm", s.tools.place.has_fields, "Place in millimetres");
+    if (s.tools.place.has_fields) place_fields(ui, s.tools);
     // Last: it comes and goes with the cursor over the model, and no button may move under a click.
-    fault_line(ui, l.fault.empty() ? s.tools.place_fault : l.fault);
+    fault_line(ui, l.fault.empty() ? s.tools.place.fault : l.fault);
     ImGui::EndDisabled();
     ImGui::End();
 }

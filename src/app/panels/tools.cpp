@@ -112,12 +112,12 @@ void place_fields(Ui& ui, ToolState& tools) {
     for (std::size_t k = 0; k < 3; ++k) {
         if (k > 0) ImGui::SameLine();
         ImGui::SetNextItemWidth(width);
-        ImGui::InputDouble((std::string("##") + kNames[k]).c_str(), &tools.place_mm[k], 0, 0, "%.1f");
+        ImGui::InputDouble((std::string("##") + kNames[k]).c_str(), &tools.place.millimetres[k], 0, 0, "%.1f");
         ui.mark(kNames[k]);
         ui.hint("Place of its middle, millimetres");
     }
     if (ui.button("Place it there", "At the place in the fields, with width and turn as they are", 0))
-        tools.place_typed = true;
+        tools.place.is_typed = true;
 }
 
 namespace {
@@ -140,12 +140,13 @@ void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
     ui.hint(w.empty() ? "InkML or SVG" : "Another one, InkML or SVG");
     if (w.empty()) return;
     ImGui::SameLine();
-    ui.toggle("mm", tools.shows_place, "Place in millimetres");
+    ui.toggle("mm", tools.place.has_fields, "Place in millimetres");
     for (const Message& note : w.form().notes) ui.note(ui.sentence(note));
     ui.toggle("Mirrored", w.mirrored);
     ImGui::SameLine();
-    ui.toggle("Snap", tools.snap, "To the plane of symmetry and level with other drawings; Ctrl places it freely");
-    if (tools.shows_place) place_fields(ui, tools);
+    ui.toggle("Snap", tools.place.snaps,
+              "To the plane of symmetry and level with other drawings; Ctrl places it freely");
+    if (tools.place.has_fields) place_fields(ui, tools);
     const bool names =
         std::ranges::any_of(w.lines.traces, [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });
     if (!w.areas.traces.empty() && !w.lines.traces.empty())

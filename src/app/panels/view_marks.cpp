@@ -185,13 +185,13 @@ void lettering_curve(const MarkParts& s, const render::GlCamera& c, ImDrawList* 
 // Where the drawing or the text would lie, as far as it is seen.
 void writing_marks(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) {
     if (s.tools.active != Tool::writing && s.tools.active != Tool::text) return;
-    for (const std::vector<Vec3>& guide : s.tools.snap_guides)
+    for (const std::vector<Vec3>& guide : s.tools.place.guides)
         for (std::size_t i = 1; i < guide.size(); ++i) {
             const ImVec2 from = on_screen(s, c, guide[i - 1]), to = on_screen(s, c, guide[i]);
             draw->AddLine(from, to, IM_COL32(30, 30, 34, 160), s.ui.px(3));
             if (i % 2) draw->AddLine(from, to, IM_COL32(90, 210, 255, 255), s.ui.px(1.6f));
         }
-    for (const auto& line : s.tools.writing_preview)
+    for (const auto& line : s.tools.place.preview)
         for (std::size_t i = 1; i < line.size(); ++i)
             if (line[i - 1].seen && line[i].seen)
                 draw->AddLine(on_screen(s, c, line[i - 1].position), on_screen(s, c, line[i].position),

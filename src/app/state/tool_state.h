@@ -16,6 +16,17 @@ namespace tuft::app {
 
 enum class Tool { brush, line, curve, writing, text, eraser, fill, pick, mask };
 
+/// Where a drawing or a text will lie.
+struct DrawingPlace {
+    std::vector<std::vector<PreviewPoint>> preview;  ///< its lines on the surface
+    Message fault;                                   ///< why it cannot lie there
+    bool snaps = true;                               ///< to planes of symmetry and to other drawings
+    std::vector<std::vector<Vec3>> guides;           ///< metres, lines along the surface that it snapped to
+    std::array<double, 3> millimetres{};             ///< position, at the cursor or as typed
+    bool has_fields = false;                         ///< its position is shown in fields
+    bool is_typed = false;                           ///< it is to be placed at `millimetres`
+};
+
 /// The active tool and the settings of each tool.
 struct ToolState {
     Tool active = Tool::brush;
@@ -27,15 +38,9 @@ struct ToolState {
     CurveSettings curve_settings;
     Writing writing;
     Lettering lettering;
-    LetteringReader letters;                                 ///< reads the characters of the text
-    CopyReader copies;                                       ///< reads the pictures that the project keeps
-    std::vector<std::vector<PreviewPoint>> writing_preview;  ///< lines of the drawing or the text at the cursor
-    Message place_fault;                                     ///< why the text cannot lie at the cursor
-    bool snap = true;                            ///< drawings snap to planes of symmetry and to other drawings
-    std::vector<std::vector<Vec3>> snap_guides;  ///< metres, lines along the surface that the drawing snapped to
-    std::array<double, 3> place_mm{};            ///< of the drawing at the cursor, or as typed
-    bool shows_place = false;                    ///< of the drawing, in fields
-    bool place_typed = false;                    ///< to be placed there
+    LetteringReader letters;  ///< reads the characters of the text
+    CopyReader copies;        ///< reads the pictures that the project keeps
+    DrawingPlace place;       ///< of the drawing or the text at the cursor
     stroke::Fill fill;
 };
 

@@ -22,7 +22,7 @@ LetteringPlace LetteringTool::place_at(const PlacingSpot& spot) const {
 }
 
 void LetteringTool::drop_preview() {
-    session_.tools.writing_preview.clear();
+    session_.tools.place.preview.clear();
     shown_.reset();
 }
 
@@ -47,20 +47,20 @@ void LetteringTool::watch(const Event* cursor) {
     }
     follow_brush();
     lay_out(l);
-    if (std::exchange(s.tools.place_typed, false) && !l.empty())
+    if (std::exchange(s.tools.place.is_typed, false) && !l.empty())
         if (const auto typed = typed_spot(s)) place(*typed);
     const bool shows = !l.empty() && !s.tools.letters.busy(l) && !s.reported.file.viewing;
     const auto spot = shows ? spot_at(s, cursor) : std::nullopt;
-    s.tools.snap_guides.clear();
-    s.tools.place_fault = {};
+    s.tools.place.guides.clear();
+    s.tools.place.fault = {};
     if (!spot) return drop_preview();
     if (l.direction == writer::Direction::horizontal || l.direction == writer::Direction::vertical)
-        s.tools.snap_guides = spot->guides;
+        s.tools.place.guides = spot->guides;
     try {
         preview(*spot);
     } catch (const Error& error) {
         drop_preview();
-        s.tools.place_fault = error.message();
+        s.tools.place.fault = error.message();
     }
 }
 
@@ -78,8 +78,8 @@ void LetteringTool::preview(const PlacingSpot& spot) {
               .revision = l.revision,
               .curve = l.curve.size()};
     if (shown_ == now) return;
-    s.tools.writing_preview = preview_lines(s.paint_thread->surface(), l, place_at(spot));
-    find_seen(s.tools.writing_preview, s);
+    s.tools.place.preview = preview_lines(s.paint_thread->surface(), l, place_at(spot));
+    find_seen(s.tools.place.preview, s);
     shown_ = now;
 }
 

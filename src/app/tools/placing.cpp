@@ -44,7 +44,7 @@ std::optional<PlacingSpot> spot_at(const Session& s, const Event* cursor) {
     if (!hit || is_through_a_hole(surface, *hit, aim)) return std::nullopt;
     PlacingSpot spot{hit->position, glm::dot(hit->normal, aim.ray.direction) < 0 ? hit->normal : -hit->normal,
                      glm::cross(aim.view_right, aim.view_up)};
-    if (!s.tools.snap || (cursor->modifiers & kControl)) return spot;
+    if (!s.tools.place.snaps || (cursor->modifiers & kControl)) return spot;
     const SnapTargets targets = snap_targets(s.tools.symmetry, surface.mesh().bounds, placements_in(s.journal.lines));
     if (auto snapped = snap(surface, spot.at, targets, kSnapPixels * aim.metres_per_pixel)) {
         const Vec3 normal = snapped->at.normal;
@@ -56,7 +56,7 @@ std::optional<PlacingSpot> spot_at(const Session& s, const Event* cursor) {
 }
 
 std::optional<PlacingSpot> typed_spot(Session& s) {
-    const auto& mm = s.tools.place_mm;
+    const auto& mm = s.tools.place.millimetres;
     const Vec3 place = kMillimetre * Vec3(mm[0], mm[1], mm[2]);
     if (!within(place)) {
         show_message(s.status, "That place is no three numbers within 10 km; nothing is placed");
@@ -79,7 +79,7 @@ GroupSettings group_settings(const Session& s, const std::string& name) {
 void show_place(ToolState& tools, const Vec3& at) {
     for (std::size_t k = 0; k < 3; ++k) {
         const double mm = at[static_cast<int>(k)] / kMillimetre;
-        tools.place_mm[k] = std::abs(mm) < kShownPlace ? 0 : mm;  // without the sign of -0.0
+        tools.place.millimetres[k] = std::abs(mm) < kShownPlace ? 0 : mm;  // without the sign of -0.0
     }
 }
 

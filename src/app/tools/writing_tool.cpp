@@ -21,16 +21,16 @@ void WritingTool::watch(const Event* cursor) {
         scale_ = 0;
         return;
     }
-    if (std::exchange(s.tools.place_typed, false) && !s.tools.writing.empty())
+    if (std::exchange(s.tools.place.is_typed, false) && !s.tools.writing.empty())
         if (const auto typed = typed_spot(s)) place(*typed);
     const auto spot = s.tools.writing.empty() ? std::nullopt : spot_at(s, cursor);
-    s.tools.snap_guides.clear();
+    s.tools.place.guides.clear();
     if (!spot) {
-        s.tools.writing_preview.clear();
+        s.tools.place.preview.clear();
         scale_ = 0;
         return;
     }
-    s.tools.snap_guides = spot->guides;
+    s.tools.place.guides = spot->guides;
     const stroke::Placement at = placement_at(*spot);
     show_place(s.tools, at.origin);
     const stroke::Placement& old = placement_;
@@ -43,8 +43,8 @@ void WritingTool::watch(const Event* cursor) {
     scale_ = s.tools.writing.scale;
     camera_ = seen_from;
     section_ = section;
-    if (!same) s.tools.writing_preview = preview_lines(s.paint_thread->surface(), s.tools.writing, at);
-    find_seen(s.tools.writing_preview, s);
+    if (!same) s.tools.place.preview = preview_lines(s.paint_thread->surface(), s.tools.writing, at);
+    find_seen(s.tools.place.preview, s);
 }
 
 void WritingTool::wheel(const Event& e) {

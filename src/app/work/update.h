@@ -30,6 +30,14 @@ struct PartChange {
     bool operator==(const PartChange&) const = default;
 };
 
+/// The path of a stroke in a unit square.
+struct PathSketch {
+    std::vector<Vec3f> points;  ///< x, y in [0, 1], y down; z: pressure in [0, 1]
+    bool flat = false;          ///< in the frame of a drawing; false: seen along the mean normal of the surface
+    Vec2 centre{0};             ///< metres, point of the drawing at (0.5, 0.5)
+    double span = 0;            ///< metres, length of [0, 1]
+};
+
 /// A journal entry in the list.
 struct StrokeLine {
     std::uint64_t id = 0;
@@ -39,11 +47,8 @@ struct StrokeLine {
     std::string brush, ink, label;
     stroke::EntryGroup group;
     bool hidden = false, erases = false, on_palette = false, is_area = false;
-    double length = 0;                           ///< metres, of the path
-    std::vector<Vec3f> path;                     ///< x, y in [0, 1], y down; z: pressure in [0, 1]
-    bool flat = false;                           ///< `path` is in the frame of a drawing
-    Vec2 path_centre{0};                         ///< metres, point of the drawing at (0.5, 0.5)
-    double path_span = 0;                        ///< metres, length of [0, 1]
+    double length = 0;  ///< metres, of the path
+    PathSketch path;
     std::optional<stroke::Placement> placement;  ///< of a drawing that lies on the model
 };
 
