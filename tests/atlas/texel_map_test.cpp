@@ -165,6 +165,13 @@ TEST(TexelMap, SixteenBitsKeepPlacesAndNormals) {
     }
 }
 
+TEST(TexelMap, PacksAtlasesFrom4096TexelsOn) {
+    EXPECT_FALSE(is_packed(TexelStore::automatic, 4095));
+    EXPECT_TRUE(is_packed(TexelStore::automatic, 4096));
+    EXPECT_FALSE(is_packed(TexelStore::floats, 16384));
+    EXPECT_TRUE(is_packed(TexelStore::packed, 16));
+}
+
 TEST(TexelMap, RefusesAnAtlasOfAnotherMeshAndSurvivesBadCoordinates) {
     Unwrapped u = testing::sheet(0.1, 1, 40);
     Unwrapped bad = u;

@@ -33,14 +33,14 @@ struct TexelShape {
 
 /// How positions and normals are kept.
 enum class TexelStore : std::uint8_t {
-    automatic,  ///< packed for atlases beyond 4096² texels
+    automatic,  ///< packed for atlases of 4096² texels and more
     floats,     ///< `TexelShape`: 29 bytes a texel with its area and cluster
     packed,     ///< `PackedShape`: 15 bytes, and 4e-4 texels less exact
 };
 
 /// What `automatic` means for an atlas of size × size texels.
 inline bool is_packed(TexelStore store, std::uint32_t size) {
-    return store == TexelStore::packed || (store == TexelStore::automatic && size > 4096);
+    return store == TexelStore::packed || (store == TexelStore::automatic && size >= 4096);
 }
 
 /// The same in 16-bit numbers: position = lo + step (x, y, z) in the box of the texel's cluster,

@@ -230,12 +230,13 @@ class ChartedMesh {
 
     const mesh::TriangleMesh& mesh() const { return parts_.any() ? kept_ : whole_; }
 
-    CutMesh uncut() const {
+    /// To be called once.
+    CutMesh uncut() {
         const double unit = chart_unit(whole_);
         if (parts_.any()) return uncut_kept_mesh(parts_, twin_, unit);
         CutMesh cut;
         cut.unit = unit;
-        cut.twin = twin_;
+        cut.twin = std::move(twin_);
         return cut;
     }
 
@@ -247,7 +248,7 @@ class ChartedMesh {
 
   private:
     const mesh::TriangleMesh& whole_;
-    std::vector<std::uint32_t> twin_;
+    std::vector<std::uint32_t> twin_;  // of the whole, while there are equal parts
     EqualParts parts_;
     mesh::TriangleMesh kept_;
 };
@@ -258,7 +259,7 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
     Limits limits = chart_limits(mesh, options);
     const ChartOptions& chart_options = limits.chart;
     MergeOptions& merge_options = limits.merge;
-    const ChartedMesh charted(mesh, options.seams);
+    ChartedMesh charted(mesh, options.seams);
     Layout layout;
     CutMesh& cut = layout.cut;
     cut = cut_into_charts(charted.mesh(), charted.uncut(), chart_options, options.progress);

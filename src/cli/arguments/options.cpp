@@ -58,7 +58,7 @@ void add_common(CLI::App* app, Common& c) {
 void add_store(CLI::App* app, Surface& s) {
     app->add_option("--texel-store", s.texel_store,
                     "how texels are kept in memory: float, packed (16 bits, half the memory), "
-                    "auto (packed beyond 4096)")
+                    "auto (packed from 4096 on)")
         ->check(CLI::IsMember({"auto", "float", "packed"}));
 }
 

@@ -15,9 +15,8 @@ void release_free_memory() {
 void keep_free_memory_below(std::size_t bytes) {
 #ifdef __GLIBC__
     constexpr std::size_t kMost = std::size_t{32} << 20;  // that glibc takes as a threshold
-    const std::size_t trim = std::min(bytes, kMost);
-    ::mallopt(M_TRIM_THRESHOLD, static_cast<int>(trim));
-    ::mallopt(M_MMAP_THRESHOLD, static_cast<int>(std::min(4 * trim, kMost)));
+    ::mallopt(M_TRIM_THRESHOLD, static_cast<int>(std::min(bytes, kMost)));
+    ::mallopt(M_MMAP_THRESHOLD, 4 << 20);
 #else
     (void)bytes;
 #endif
