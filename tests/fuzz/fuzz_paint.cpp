@@ -25,21 +25,25 @@ constexpr double kShort = 1e-3;
 constexpr double kReaches[] = {2.5e-4, 2.5e-4, 2.5e-4, 1e-3, 4e-3, 1.5e-2};
 constexpr double kSpacings[] = {1, 4, 16, 1000};  // texels
 
-/// What takes as long as tens or hundreds of other inputs: a document measures a brush's tip lag and table anew, and a
-/// model is made. Which inputs do it is said by a hash of all their bytes, so changes of one that did it rarely do it
-/// too.
+/// What takes as long as tens or hundreds of other inputs: a document measures a brush's tip lag and table anew, a
+/// model is made, coupled spines move far. Which inputs do it is said by a hash of all their bytes, so changes of one
+/// that did it rarely do it too.
 struct Costly {
     bool measured = false;  ///< tip lag, tables
     bool long_path = false;
-    bool twice = false;      ///< a replay must give the same bits
-    bool own_model = false;  ///< one that no other input has
+    bool long_of_wide = false;  ///< as many samples and as much pressure by a wide brush as by a round one
+    bool twice = false;         ///< a replay must give the same bits
+    bool own_model = false;     ///< one that no other input has
 };
 Costly costly(std::span<const std::uint8_t> input) {
     std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
     for (const std::uint8_t byte : input) hash = (hash ^ byte) * 0x100000001b3u;
     hash ^= hash >> 32;
-    return {
-        .measured = hash % 256 == 1, .long_path = hash % 16 == 2, .twice = hash % 8 == 3, .own_model = hash % 256 == 4};
+    return {.measured = hash % 256 == 1,
+            .long_path = hash % 16 == 2,
+            .long_of_wide = hash % 16 == 5,
+            .twice = hash % 8 == 3,
+            .own_model = hash % 256 == 4};
 }
 
 /// A tile, a roof, a block or two tiles with a gap, some 20 mm large, each corner moved by up to half of it: in one of
@@ -106,9 +110,8 @@ class Models {
     std::unique_ptr<const stroke::Model> own_;
 };
 
-/// Gives a painting its brushes and inks, which are read once: a measured pigment takes longer than a stroke. The
-/// brushes have less hair than they should, in fewer parts.
-void use_presets(stroke::Document& painting) {
+/// In the order of kBrushes, with less hair than they should have, in fewer parts.
+const std::vector<brush::Preset>& brushes() {
     static const std::vector<brush::Preset> brushes = [] {
         std::vector<brush::Preset> all;
         for (const char* name : kBrushes) {
@@ -121,7 +124,12 @@ void use_presets(stroke::Document& painting) {
         }
         return all;
     }();
-    for (const brush::Preset& brush : brushes) painting.use(brush);
+    return brushes;
+}
+
+/// Gives a painting its brushes and inks, which are read once: a measured pigment takes longer than a stroke.
+void use_presets(stroke::Document& painting) {
+    for (const brush::Preset& brush : brushes()) painting.use(brush);
     static const std::vector<ink::Ink> inks = [] {
         std::vector<ink::Ink> all;
         for (const char* name : kInks) all.push_back(ink::load_ink(name));
@@ -141,7 +149,11 @@ stroke::PaintStroke stroke_of(Bytes& bytes, const Costly& how) {
     stroke::PaintStroke s;
     const int flags = bytes.byte(), more = bytes.byte(), size = bytes.byte(), kind = bytes.byte();
     const double any_reach = kReaches[size % std::size(kReaches)];
+    const int brush = (more & 3) | (kind >> 3 & 4);
     const double reach = how.long_path ? any_reach : std::min(any_reach, kShort);
+    // A step of coupled spines takes thirty times as long as one of a round tuft, and a change of pressure as many
+    // steps as a path.
+    const bool is_small = brushes()[brush].spines > 1 && !how.long_of_wide;
     s.settings.spacing = kSpacings[size >> 6];
     s.settings.spine = spine_of(flags & 1, how.measured, kind);
     s.settings.footprint = flags & 2 ? footprint::Mapping::plane : footprint::Mapping::log;
@@ -151,7 +163,7 @@ stroke::PaintStroke stroke_of(Bytes& bytes, const Costly& how) {
     s.settings.smooth = flags & 64 ? 1 : 0;
     s.settings.pressure = flags & 128 ? stroke::PressureFrom::speed_dwell : stroke::PressureFrom::none;
     s.settings.down = Vec3(bytes.real(), bytes.real(), bytes.real());
-    s.brush = kBrushes[(more & 3) | (kind >> 3 & 4)];
+    s.brush = kBrushes[brush];
     s.layer = kind & 0x40 ? 2 : stroke::kFirstLayer;
     s.mask = kind & 0x80 ? 1 : 0;
     if (size & 32) s.settings.stabilise = reach;
@@ -164,13 +176,13 @@ stroke::PaintStroke stroke_of(Bytes& bytes, const Costly& how) {
     s.trace.placement.mapping = static_cast<stroke::SurfaceMapping>(bytes.below(3));
     s.trace.placement.origin = 0.02 * Vec3(bytes.real(), bytes.real(), bytes.real());
     if (more & 32) s.trace.placement.right = glm::normalize(Vec3(1, bytes.real(), bytes.real()));
-    const int n = 1 + bytes.below(8);
+    const int n = 1 + bytes.below(is_small ? 2 : 8);
     double time = 0;
     for (int i = 0; i < n; ++i) {
         stroke::StrokeSample sample;
         sample.time = time += 0.01 * (1 + bytes.real());
         sample.position = reach * Vec3(bytes.real(), bytes.real(), 0);
-        sample.pressure = 0.5 + 0.5 * bytes.real();
+        sample.pressure = is_small ? 0.1 + 0.05 * bytes.real() : 0.5 + 0.5 * bytes.real();
         if (more & 64) sample.tilt = Vec2(bytes.real(), bytes.real());
         if (!s.trace.flat) {
             sample.position.z = 0.02 + reach * bytes.real();
