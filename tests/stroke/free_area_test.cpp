@@ -189,19 +189,27 @@ TEST(FreeArea, ACalmAreaIsPreferredToALargerRoughOne) {
     EXPECT_NEAR(free->at.position.x, -0.05, 0.012) << "within the flat wall";
 }
 
+/// Unit directions across the surface at the vertices.
+std::vector<Vec3f> directions_across(const TriangleMesh& model) {
+    const std::vector<Vec3f>& p = model.positions;
+    std::vector<Vec3f> across(p.size(), Vec3f(0));
+    for (const auto& t : model.triangles)
+        for (const std::uint32_t v : t) across[v] += glm::cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]]);
+    for (Vec3f& a : across) a = glm::normalize(a);
+    return across;
+}
+
 // Noise across the surface of a scan. Its triangles lean by 20 to 60 degrees; at the scale of a drawing the surface is
 // as calm as before.
 TEST(FreeArea, NoiseOfAScanLeavesItsSize) {
     TriangleMesh model = mesh::build_surface(mesh::read_polygon_file(source_folder() + "/models/bowl.ply")).mesh;
     const std::vector<Vec3f> clean = model.positions;
-    std::vector<Vec3f> across(clean.size(), Vec3f(0));
-    for (const auto& t : model.triangles)
-        for (const std::uint32_t v : t) across[v] += glm::cross(clean[t[1]] - clean[t[0]], clean[t[2]] - clean[t[0]]);
+    const std::vector<Vec3f> across = directions_across(model);
     for (const auto& [side, aspect] : {std::pair{Side::front, 1.0}, {Side::inside, 1.0}}) {
         std::optional<FreeArea> smooth;
         for (const float noise : {0.0F, 0.3e-3F}) {
             for (std::size_t v = 0; v < clean.size(); ++v)
-                model.positions[v] = clean[v] + noise * static_cast<float>(normal(v)) * glm::normalize(across[v]);
+                model.positions[v] = clean[v] + noise * static_cast<float>(normal(v)) * across[v];
             const SurfaceQuery query(model);
             const auto free = find_free_area(query, side, aspect);
             ASSERT_TRUE(free) << noise;
@@ -211,6 +219,27 @@ TEST(FreeArea, NoiseOfAScanLeavesItsSize) {
             EXPECT_LT(glm::distance(free->at.position, smooth->at.position), 0.1 * smooth->size.x) << noise;
         }
     }
+}
+
+// The ends of a car are narrow and have many edges: of their rays a tenth meets something else than its image does.
+TEST(FreeArea, NoiseOfAScanLeavesItInThePlaneOfSymmetry) {
+    TriangleMesh model = mesh::build_surface(mesh::read_polygon_file(source_folder() + "/models/car.ply")).mesh;
+    constexpr float kNoise = 0.3e-3F;
+    const std::vector<Vec3f> across = directions_across(model);
+    model.bounds = {};
+    for (std::size_t v = 0; v < across.size(); ++v) {
+        if (!std::isfinite(across[v].x)) continue;
+        model.positions[v] += kNoise * static_cast<float>(normal(v)) * across[v];
+        model.bounds.add(Vec3(model.positions[v]));
+    }
+    const SurfaceQuery query(model);
+    for (const Side side : {Side::right, Side::left})
+        for (const double aspect : {0.5, 1.4}) {
+            const auto free = find_free_area(query, side, aspect);
+            ASSERT_TRUE(free) << side_name(side) << ", " << aspect;
+            EXPECT_NEAR(free->at.position.y, 0, 4 * kNoise)
+                << side_name(side) << ", " << aspect << ": the middle of a box that noise made wider on either side";
+        }
 }
 
 }  // namespace

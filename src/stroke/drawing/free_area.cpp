@@ -30,7 +30,9 @@ constexpr double kGap = 0.5;    // cells of a gap's depth that count as roughnes
 constexpr double kSlack = 8;    // times the noise make no step: 4 of its differences' standard deviations, seen at 45°
 constexpr double kAbove = 0.05;  // cells above the surface from which walls are looked for
 constexpr double kLeastScale = 1.0 / 32, kMostAspect = 32;
-constexpr double kSymmetric = 0.93;  // of the rays that hit: so many have a mirror image in a view that has a middle
+constexpr double kSymmetric = 0.9;   // so much is mirrored in a view that has a middle
+constexpr double kLopsided = 0.75;   // so little in one that has none
+constexpr double kUncertain = 4;     // times the noise: 2.8 standard deviations of the difference of two depths
 constexpr double kSameNormal = 0.9;  // cosine between the normal of a ray and that of its image
 constexpr double kCentred = 0.33;    // of the most worth: an area in the middle that is worth so much is taken
 constexpr int kAround = 8,
@@ -110,11 +112,11 @@ class View {
             reach_[k] = static_cast<int>(std::min(double(kMostReach), reach / std::max(cell_[k], 1e-30) + 0.5));
         cast();
         judge();
-        symmetric_ = is_symmetric();
+        symmetry_ = mirrored_part();
     }
 
-    /// Whether its left half mirrors its right one.
-    bool symmetric() const { return symmetric_; }
+    /// Of the rays that hit, or whose image does, those whose surface is mirrored.
+    double symmetry() const { return symmetry_; }
     bool flat() const { return !(cell_.x > 0 && cell_.y > 0); }
     const Vec2& cell() const { return cell_; }
     const Vec3& look() const { return look_; }
@@ -140,21 +142,33 @@ class View {
         return walls >= kWalls;
     }
 
-    bool is_symmetric() const {
+    bool is_mirrored(int i, int j) const {
         const Vec3 right = glm::normalize(right_);
-        const double slack = kAlike * std::max(cell_.x, cell_.y);
+        const double slack = kAlike * std::max(cell_.x, cell_.y) + kUncertain * noise_;
+        const std::size_t here = index(i, j);
+        for (int y = std::max(0, j - 1); y <= std::min(kCells - 1, j + 1); ++y)
+            for (int x = std::max(0, i - 1); x <= std::min(kCells - 1, i + 1); ++x) {
+                const std::size_t there = index(kCells - 1 - x, y);
+                const Vec3& n = cells_[there].normal;
+                const Vec3 image = n - 2 * glm::dot(n, right) * right;
+                if (std::abs(depth_[here] - depth_[there]) <= slack &&
+                    (cells_[here].seen == 0 || glm::dot(image, cells_[here].normal) >= kSameNormal))
+                    return true;
+            }
+        return false;
+    }
+
+    double mirrored_part() const {
         std::size_t seen = 0, mirrored = 0;
         for (int j = 0; j < kCells; ++j)
             for (int i = 0; i < kCells; ++i) {
-                const std::size_t here = index(i, j), there = index(kCells - 1 - i, j);
-                if (!std::isfinite(depth_[here])) continue;
+                const int image = kCells - 1 - i;
+                const bool hits = std::isfinite(depth_[index(i, j)]);
+                if (!hits && !std::isfinite(depth_[index(image, j)])) continue;
                 ++seen;
-                const Vec3& n = cells_[there].normal;
-                const Vec3 image = n - 2 * glm::dot(n, right) * right;
-                mirrored += std::abs(depth_[here] - depth_[there]) <= slack &&
-                            (cells_[here].seen == 0 || glm::dot(image, cells_[here].normal) >= kSameNormal);
+                mirrored += is_mirrored(hits ? i : image, j);
             }
-        return static_cast<double>(mirrored) >= kSymmetric * static_cast<double>(seen);
+        return seen == 0 ? 0 : static_cast<double>(mirrored) / static_cast<double>(seen);
     }
 
     /// Whether the surface is one between two neighbouring cells.
@@ -302,7 +316,8 @@ class View {
     const mesh::SurfaceQuery& query_;
     Vec3 look_, right_, up_, before_;
     Vec2 cell_;
-    bool inside_, symmetric_ = false;
+    bool inside_;
+    double symmetry_ = 0;
     std::array<int, 2> reach_{};    // over which the surface is smoothed: cells to each side, and up and down
     double noise_ = 0, slack_ = 0;  // usual distance from the plane, and what it adds to a step: metres
     std::vector<double> depth_;     // of the rays, metres; infinite where none hits
@@ -373,6 +388,12 @@ std::size_t middle_one(const std::vector<Rectangle>& found) {
     return best;
 }
 
+/// Part of the most worth at which an area in the middle is taken. It has no step, so that noise decides little.
+double centred_from(double symmetry) {
+    const double lopsided = std::clamp((kSymmetric - symmetry) / (kSymmetric - kLopsided), 0.0, 1.0);
+    return kCentred + lopsided * (1 - kCentred);
+}
+
 /// The rectangle that is worth most, with its centre in the columns `from` to `to`.
 std::optional<Rectangle> best_rectangle(const View& view, const Sums& sums, const Shape& shape, int from, int to) {
     std::optional<Rectangle> best;
@@ -438,9 +459,9 @@ std::optional<FreeArea> find_free_area(const mesh::SurfaceQuery& query, Side sid
     const Shape shape(view.cell(), aspect);
     const Sums sums = view.sums();
     std::optional<Rectangle> best = best_rectangle(view, sums, shape, 0, kCells - 1);
-    if (best && view.symmetric())
+    if (best && view.symmetry() > kLopsided)
         if (const auto middle = best_rectangle(view, sums, shape, kMiddle, kMiddle);
-            middle && middle->worth >= kCentred * best->worth)
+            middle && middle->worth >= centred_from(view.symmetry()) * best->worth)
             best = middle;
     if (!best) return {};
     // A ray into a shut line may meet nothing.

@@ -50,8 +50,9 @@ struct FreeArea {
 /// A rectangle has the given `aspect` (width over height, clamped to 1/32–32), free rays only, and |mean of its
 /// normals| ≥ 0.85: no more bent than a wide arc of a cylinder. It is worth its scale / (1 + mean roughness / 0.08). Of
 /// rectangles that are worth as much within 3 %, the middle one of the largest group is taken. In a view whose halves
-/// mirror each other (93 % of its rays), the best rectangle on the middle line is taken where it is worth at least a
-/// third of the best of all. Returns nothing where less than 1/32 of the view is free. Cost: about 0.1 s.
+/// mirror each other, to a cell and four times the noise, the best rectangle on the middle line is taken where it is
+/// worth at least a third of the best of all; where 90 to 75 % of its rays are mirrored, at least a third to all.
+/// Returns nothing where less than 1/32 of the view is free. Cost: about 0.1 s.
 std::optional<FreeArea> find_free_area(const mesh::SurfaceQuery& query, Side side, double aspect);
 
 }  // namespace tuft::stroke
