@@ -248,7 +248,7 @@ TEST_F(WritingOnModel, InItsColoursItIsTheSame) {
 }
 
 TEST_F(WritingOnModel, OnACarsDoorItIsTheSame) {
-    const Writing w = badge(0.300);
+    const Writing w = badge(0.150);
     const Painted studio = by_studio("car.ply", w, {0, -3, 0.118}, {0, 1, 0}, {1, 0, 0}, kHand);
     expect_same(studio, by_program("car.ply", w, studio.words, ""));
     EXPECT_GT(studio.journal.size(), 2u) << "the area is painted too";

@@ -12,6 +12,7 @@
 
 #include "app/dialogs/dialogs.h"
 #include "app/panels/panels.h"
+#include "app/studio/set_by_name.h"
 #include "app/studio/studio.h"
 #include "core/text/units.h"
 #include "io/image/image.h"
@@ -299,6 +300,8 @@ void Script::act(Studio& studio, const ScriptCommand& c, double now) {
         revise_with(s, word);
     else if (c.name == "rate")
         sample_ = 1.0 / std::clamp(std::atof(word.c_str()), 10.0, 10000.0);
+    else if (c.name == "set" && word == "draw-every")
+        draw_every_ = static_cast<std::size_t>(std::clamp(number_of(c.words[1]), 1.0, 1000.0));
     else if (c.name == "set")
         studio.set(word, c.words[1]);
     else if (c.name == "save")
@@ -376,8 +379,9 @@ double Script::patience(const Studio& studio) const {
     return wait_.on ? std::min(0.02, studio.patience()) : 0;
 }
 
-bool Script::looks() const {
-    return !wait_.on || pace_.on || fuzzer_;
+bool Script::looks() {
+    if (!wanted_.picture.empty()) return true;
+    return (!wait_.on || pace_.on || fuzzer_) && ++looked_ % draw_every_ == 0;
 }
 
 void Script::after_frame(Studio& studio, int width, int height, bool drawn) {

@@ -43,9 +43,10 @@ class Script {
 
     /// Adds the events before a frame. `now`: seconds on the window's clock. Throws `Error` where an expectation fails.
     void before_frame(Studio& studio, EventQueue& events, double now);
-    /// Returns whether the next frame's picture counts where no window shows it: not while the script only waits. The
-    /// frame that ends a wait counts, so that each command begins on what is drawn.
-    bool looks() const;
+    /// Returns whether the next frame is drawn where no window shows it; call it once a frame. It is for a screenshot,
+    /// and one of `draw-every` in which the script does not only wait. The frame that ends a wait counts, so that each
+    /// command begins on what is drawn.
+    bool looks();
     /// Writes pictures after a frame of that size in pixels. `drawn`: not only its events were handled.
     void after_frame(Studio& studio, int width, int height, bool drawn);
     /// Returns the seconds that the next frame may wait: 0 while there are events to play.
@@ -107,6 +108,7 @@ class Script {
     std::optional<UiFuzzer> fuzzer_;  ///< while `random` plays
     std::size_t quits_ = 0;           ///< times that the fuzzer quit the program
     std::size_t frames_ = 0;
+    std::size_t looked_ = 0, draw_every_ = 1;  ///< frames in which it does not only wait
     ReportStart report_;
 };
 

@@ -59,10 +59,7 @@ Studio::~Studio() {
 }
 
 void Studio::set(const std::string& name, const std::string& value) {
-    if (name == "draw-every")
-        draw_every_ = static_cast<std::size_t>(std::clamp(number_of(value), 1.0, 1000.0));
-    else
-        set_by_name(session_, name, value);
+    set_by_name(session_, name, value);
 }
 
 void Studio::drop_graphics() {
@@ -364,7 +361,7 @@ void Studio::frame(EventQueue& queue, const Output& output, double now) {
     s.ui.enter = false;
     ImGui::Render();
     if (s.ui.lacks_characters(*ImGui::GetDrawData())) s.preferences.restyle = true;
-    if (!output.seen || ++frames_ % draw_every_ != 0) return;
+    if (!output.seen) return;
     scene_.draw(output.framebuffer, height, input_.turned_within(kTurnPause, now));
     picture_.store(now);
     glBindFramebuffer(GL_FRAMEBUFFER, output.framebuffer);

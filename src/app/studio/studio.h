@@ -69,7 +69,6 @@ class Studio {
     ProjectPicture picture_;
     float content_scale_ = 1;
     double now_ = 0, last_event_ = 0;
-    std::size_t frames_ = 0, draw_every_ = 1;
     Output output_;  ///< of the last frame
 };
 
