@@ -47,6 +47,7 @@ constexpr std::array kFields = {
     Field{"ferrule", "hair_diameter_mm", &Preset::hair_diameter, kMillimetre, 0.01, 2},
     Field{"ferrule", "surface_tension_n_m", &Preset::surface_tension, 1, 0, 1},
     Field{"ferrule", "hair_friction", &Preset::hair_friction, 1, 0, 2},
+    Field{"ferrule", "curl_radius_mm", &Preset::curl_radius, kMillimetre, 0, 10000},
     Field{"hold", "lean_rad", &Preset::lean, 1, 0, 0.8},
     Field{"foam", "modulus_kpa", &Preset::modulus, 1e3, 0, 1000},
     Field{"foam", "solid", &Preset::solid, 1, 0.005, 0.3},
@@ -319,8 +320,8 @@ Preset scaled(const Preset& preset, double factor) {
                                    &Preset::end_compliance, &Preset::adhesion_range, &Preset::adhesion})
         p.*length *= factor;
     if (p.spines > 1) {
-        for (double Preset::*length :
-             {&Preset::width, &Preset::toe, &Preset::slant, &Preset::hair_diameter, &Preset::surface_tension})
+        for (double Preset::*length : {&Preset::width, &Preset::toe, &Preset::slant, &Preset::hair_diameter,
+                                       &Preset::surface_tension, &Preset::curl_radius})
             p.*length *= factor;
     }
     for (double Preset::*length : {&Preset::dome, &Preset::rim, &Preset::unevenness}) p.*length *= factor;
