@@ -5,8 +5,8 @@
 //   measure_writer copy DATA CHARACTERS                      strokes that are found again in a picture of the character
 // CHARACTERS is a file. --weak writes a picture (.ppm) of each stroke below 0.92 (--below): wanted grey, missing red,
 // extra blue, the path of the brush green. --plain takes the cue of the head off the centre lines: a first segment of
-// less than 60 units, as sources without it (KanjiVG) have them. --drawn writes each character as it is drawn (.pgm, a
-// pixel a unit, for score_painted.py --drawn). `score` draws the writer's strokes on a plane, without
+// less than 60 units, and the outlines, as sources without them (KanjiVG) are. --drawn writes each character as it is
+// drawn (.pgm, a pixel a unit, for score_painted.py --drawn). `score` draws the writer's strokes on a plane, without
 // texels, and compares their union with the outlines in cells of 2 units; score_painted.py compares what `tuft write`
 // painted.
 #include <fmt/format.h>
@@ -203,8 +203,11 @@ int main(int argc, char** argv) {
     for (const char32_t code : characters) {
         Glyph glyph = load(words.at(1), code);
         if (options.contains("plain")) take_cues_off(glyph);
+        Glyph given = glyph;
+        if (options.contains("plain"))  // nor do such sources state outlines
+            for (GlyphStroke& s : given.strokes) s.outline.clear();
         const std::clock_t start = std::clock();
-        const std::vector<WrittenStroke> written = writer.write({glyph}).front();
+        const std::vector<WrittenStroke> written = writer.write({given}).front();
         seconds += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
         Cells truth = square(), drawn = square();
         std::string page(std::size_t(kPage) * kPage, static_cast<char>(255));

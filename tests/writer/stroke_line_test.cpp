@@ -8,7 +8,11 @@
 #include <vector>
 
 #include "core/files/files.h"
+#include "writer/gesture/corners.h"
+#include "writer/gesture/heads.h"
+#include "writer/gesture/knuckles.h"
 #include "writer/gesture/side_table.h"
+#include "writer/glyphs/glyph_source.h"
 
 namespace tuft::writer {
 namespace {
@@ -135,6 +139,78 @@ TEST(SideTable, AHanHookIsAsWideAsHooksAreWhereItsCornerIsSoft) {
     };
     EXPECT_GT(width_at_root(U'七'), 80);
     EXPECT_LE(width_at_root(U'も'), 48);
+}
+
+// The table of heads.h, to the rounding of its numbers.
+TEST(Heads, LinesOfAPenBeginAsTheTypefacesDo) {
+    const auto head_of = [](const std::vector<Vec2>& median, const std::vector<Vec2>& other) {
+        const Glyph glyph{.code = U'中', .strokes = {{.median = median}, {.median = other}}};
+        return with_heads(glyph).strokes[0].median;
+    };
+    const std::vector<Vec2> apart{{600, 100}, {900, 100}};
+    for (const double length : {150.0, 400.0, 800.0}) {
+        const std::vector<Vec2> bar{{300, 900}, {300, 900 - length}};
+        const std::vector<Vec2> head = head_of(bar, apart);
+        EXPECT_NEAR(head[0].x, 300 - std::min(20 + 0.038 * length, 43.0), 1e-6) << length;
+        EXPECT_NEAR(head[0].y, 900, 1e-6);
+        EXPECT_NEAR(glm::distance(head[1], Vec2(300, 865)), 0, 1e-6);
+        EXPECT_EQ(head.back(), bar.back());
+        EXPECT_EQ(head_of(head, apart), head) << "a head that is stated stays";
+        EXPECT_EQ(head_of(bar, {{200, 910}, {400, 910}}), bar) << "a head on another line stays";
+        EXPECT_NEAR(head_of(bar, {{200, 940}, {400, 940}})[0].x, 300 - 0.8 * (300 - head[0].x), 1e-6);
+    }
+    const std::vector<Vec2> level{{100, 500}, {500, 510}}, dot{{100, 500}, {100, 400}};
+    EXPECT_EQ(head_of(level, apart), level);
+    EXPECT_EQ(head_of(dot, apart), dot);
+    Glyph stated{.code = U'中',
+                 .strokes = {{.median = {{300, 900}, {300, 500}}, .outline = {{{0, 0}, {1, 0}, {0, 1}}}}}};
+    EXPECT_EQ(with_heads(stated).strokes[0].median, stated.strokes[0].median);
+    stated.strokes[0].outline.clear(), stated.code = U'り';
+    EXPECT_EQ(with_heads(stated).strokes[0].median, stated.strokes[0].median);
+}
+
+Cells area_predicted(const Glyph& glyph, std::size_t stroke) {
+    static const SideTable table = SideTable::load(data_folder() / "models" / "writer" / "sides.txt");
+    const StrokeLine line = make_stroke_line(glyph.strokes[stroke].median);
+    const std::vector<Ring> rings = area_of(line, table.predict(line, glyph, stroke));
+    Cells cells = cells_over(rings, 2, 30);
+    for (const Ring& ring : rings) fill(cells, std::span(&ring, 1));
+    return cells;
+}
+
+// A ball at a head has a neck behind it. Of 114 heads of a typeface with the same characters, ten have one.
+TEST(Heads, OfBundledCharactersHaveNoNecks) {
+    const auto source = open_glyphs(bundled_glyphs());
+    int necks = 0;
+    for (const char32_t code : {U'川', U'山'}) {
+        const Glyph glyph = with_heads(*source->find(code));
+        ASSERT_EQ(glyph.strokes.size(), 3u);
+        for (std::size_t s = 0; s < 3; ++s) {
+            const Cells area = area_predicted(glyph, s);
+            for (const EdgeTurn& turn : edge_turns(area, coverage_of(area), kKnuckle))
+                necks += turn.curvature < 0 && glm::distance(turn.at, glyph.strokes[s].median[0]) < 110;
+        }
+    }
+    EXPECT_LE(necks, 1);
+}
+
+// 豎折 of 山, drawn to the corner itself. Two arms as wide as the widest place of both hold a disc of that radius at
+// their corner, and one of √2 of it where the inside is filled.
+TEST(Corners, OfADrawnLineAreNoBalls) {
+    const Glyph mountain = *open_glyphs(bundled_glyphs())->find(U'山');
+    const Vec2 corner = 0.5 * (mountain.strokes[1].median[4] + mountain.strokes[1].median[5]);
+    const Cells area = area_predicted(mountain, 1);
+    const std::vector<float> room = clearances(area);
+    float at_corner = 0, of_arms = 0;
+    for (int j = 0; j < area.height; ++j)
+        for (int i = 0; i < area.width; ++i) {
+            const bool near = glm::distance(area.centre(i, j), corner) < 100;
+            const float here = room[std::size_t(j) * area.width + static_cast<std::size_t>(i)];
+            float& most = near ? at_corner : of_arms;
+            most = std::max(most, here);
+        }
+    EXPECT_GT(of_arms, 20);
+    EXPECT_LT(at_corner, std::numbers::sqrt2 * of_arms);
 }
 
 TEST(Clearances, OfADiscAreTheDistanceToItsEdge) {

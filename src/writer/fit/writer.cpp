@@ -13,6 +13,7 @@
 #include "core/hash.h"
 #include "core/system/parallel.h"
 #include "io/strokes/area_lines.h"
+#include "writer/gesture/heads.h"
 
 namespace tuft::writer {
 namespace {
@@ -155,7 +156,10 @@ Writer::Fitted Writer::fit_stroke(const Glyph& glyph, std::size_t stroke, const 
     return made;
 }
 
-std::vector<std::vector<WrittenStroke>> Writer::write(const std::vector<Glyph>& glyphs, const ProgressFn& progress) {
+std::vector<std::vector<WrittenStroke>> Writer::write(const std::vector<Glyph>& given, const ProgressFn& progress) {
+    std::vector<Glyph> glyphs = given;
+    if (options_.style.kind == HandKind::brush)
+        for (Glyph& glyph : glyphs) glyph = with_heads(std::move(glyph));
     const BrushHand with = hand();
     const Pace at = pace();
     const bool brushed =

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/files/files.h"
+#include "writer/gesture/corners.h"
 
 namespace tuft::writer {
 namespace {
@@ -204,6 +205,7 @@ StrokeSides SideTable::predict(const StrokeLine& line, const Glyph& glyph, std::
             for (double& v : row) v = std::clamp(v, 1.0, widest);
     for (auto* fan : {&sides.head, &sides.tail})
         for (double& v : *fan) v = std::clamp(v, 0.0, 70.0);
+    if (glyph.strokes[stroke].outline.empty()) limit_corners(line, sides);
     return sides;
 }
 
