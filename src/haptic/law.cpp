@@ -15,6 +15,9 @@ constexpr double kFadeRate = 0.06;        // N by which the offset falls in a pe
 constexpr double kRestoreTime = 0.15;     // s
 constexpr double kTankKeeps = 30e-6;      // e_0, J, of what came in and is stored nowhere; in the air, at least
 constexpr double kTankStiffness = 1.25;   // of K: what a full spring gives is never held back
+constexpr double kPlannedFall = 0.9;      // of k_max: a hand that speeds up meanwhile makes the fall steeper
+constexpr double kFallFree = 0.08;        // N that a force may fall in a period at rest
+constexpr double kReserve = 0.5;          // of the work of a period: counts change by it what is planned
 constexpr double kMostDelayed = 12;       // periods
 constexpr double kLeast = 0.5e-6;         // J to which an empty tank is filled, so that it does not lock at no force
 constexpr double kMostLent = 0.8e-6;      // J of it in a contact
@@ -143,7 +146,7 @@ void fill_tank(LawState& s, bool was_free, double stored) {
 
 /// k, N/m.
 double tank_stiffness(const LawOptions& options) {
-    return std::min(options.limits.max_stiffness / options.scale, kTankStiffness * coupling_of(options));
+    return std::min(kPlannedFall * options.limits.max_stiffness / options.scale, kTankStiffness * coupling_of(options));
 }
 
 /// a of a hand at rest, m: the path that it can make while a force acts.
@@ -158,25 +161,45 @@ double landing_loan(const LawOptions& options, const LawState& s) {
     return 0.5 * coupling_of(options) * b * b * std::clamp(2 - 0.5 * s.landed / b, 0.0, 1.0);
 }
 
+/// Δx̂: the motion of the arm in the j-th period from the last one on, m. Two low passes in a row lag by T a and 2 T a
+/// of a speed that grows by a: their difference takes the lag away. A count stirs it up by a third of a count.
+Vec3 expected_motion(const LawState& s, std::size_t j) {
+    const double ahead = 1 + static_cast<double>(j) * std::expm1(T / kVelocityTime);
+    return T * (s.arm_velocity + ahead * (s.arm_velocity - s.arm_velocity_before));
+}
+
 /// e′, J.
-double energy_left(const LawOptions& options, const LawState& s, const Vec3& moved) {
-    double pending = 0;  // what forces on their way will take, if the hand goes on
-    for (std::size_t i = 1; i <= s.delayed; ++i) pending += std::max(0.0, glm::dot(sent(s, i), moved));
+double energy_left(const LawOptions& options, const LawState& s) {
+    double pending = 0;  // what forces on their way will take, by the longer of two delays
+    const std::size_t n = s.delayed > 0 ? s.delayed + 1 : 0;
+    for (std::size_t i = 1; i <= n; ++i) pending += std::max(0.0, glm::dot(sent(s, i), expected_motion(s, n + 1 - i)));
     return std::max(0.0, s.tank + landing_loan(options, s) - pending);
 }
 
-/// a: the path along `u` that the hand can make while a force acts, m.
+/// a: the path along `u` that the hand can make while a force acts, m, where it makes `moved` in a period.
 double path_ahead(const LawOptions& options, const LawState& s, const Vec3& moved, const Vec3& u) {
     return glm::dot(moved, u) + path_from_rest(options, s);
 }
 
-/// Step 6: the greatest force along a path `ahead` that the tank lets out.
-double most_force(const LawOptions& options, double left, double ahead) {
-    const double k = tank_stiffness(options);
+/// P: the force of a spring of k that gives `left` J back over parts of `ahead` m.
+double spring_force(double k, double left, double ahead) {
     if (ahead <= 0) return std::sqrt(2 * k * left) - k * ahead;  // against it, the tank only fills
     const double fall = k * ahead, whole = left / (fall * ahead);
     const double n = std::floor(std::sqrt(0.25 + 2 * whole) - 0.5);  // n (n + 1) / 2 <= whole
     return left / ((n + 1) * ahead) + 0.5 * n * fall;
+}
+
+/// Step 6: the greatest force along `u` that the tank lets out. Never more than `left` pays for. Above that a force
+/// that ends is planned by the motion without counts, and where counts have hidden what it costs, falls no faster for
+/// it.
+double most_force(const LawOptions& options, const LawState& s, double left, const Vec3& moved, const Vec3& u) {
+    const double last = std::max(0.0, glm::dot(s.force, u));
+    const Vec3 next = expected_motion(s, 1);
+    const double kept = left - kReserve * last * std::max(0.0, glm::dot(next, u));
+    const double planned = spring_force(tank_stiffness(options), std::max(0.0, kept), path_ahead(options, s, next, u));
+    const double fall = options.limits.max_stiffness / options.scale * glm::length(expected_motion(s, 0)) + kFallFree;
+    const double most = std::max(planned, last - fall), ahead = path_ahead(options, s, moved, u);
+    return ahead > 0 ? std::min(most, left / ahead) : most;
 }
 
 /// Step 6 of a moment, which may take `left` J while the wrist goes on turning by `turned` a period.
@@ -215,7 +238,9 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     const Vec3 moved = in.arm - s.arm, turned = turn_between(s.rotation, in.rotation);
     s.delayed = static_cast<std::size_t>(std::clamp(std::ceil(options.delay / T - 1e-9), 0.0, kMostDelayed));
     settle_tank(options, s, in);
-    s.arm_velocity += (moved / T - s.arm_velocity) * (1 - std::exp(-T / kVelocityTime));
+    const double passed = 1 - std::exp(-T / kVelocityTime);
+    s.arm_velocity += (moved / T - s.arm_velocity) * passed;
+    s.arm_velocity_before += (s.arm_velocity - s.arm_velocity_before) * passed;
     s.arm = in.arm;
     s.rotation = in.rotation;
 
@@ -243,12 +268,13 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     if (s.free) s.restored *= 1 - T / kRestoreTime;
     fill_tank(s, was_free, in.hair ? gain * in.hair->stored : 0);
     LawOutput out{.root = root, .hard = held.hard};
-    double left = energy_left(options, s, moved);
+    double left = energy_left(options, s);
     if (const double size = glm::length(f); size > 0) {
-        const double ahead = path_ahead(options, s, moved, f / size), most = most_force(options, left, ahead);
+        const Vec3 u = f / size;
+        const double most = most_force(options, s, left, moved, u);
         out.limited = size > most;
         if (out.limited) f = limited(f, most);
-        left = std::max(0.0, left - glm::length(f) * std::max(0.0, ahead));
+        left = std::max(0.0, left - glm::length(f) * std::max(0.0, path_ahead(options, s, moved, u)));
     }
     const double kept = wanted > 0 ? glm::length(f) / wanted : in.pass;
     s.force = f;

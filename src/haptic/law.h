@@ -34,11 +34,13 @@
 ///    v², which came from the hand. An empty tank is filled to 0.5 µJ, with 0.8 µJ at most in a contact, from which a
 ///    hand that moves fills it by itself. When free, e is at least e_0.
 ///
-///        |f| <= e′ / ((n + 1) a) + n k a / 2,  n the most with k a² n (n + 1) / 2 <= e′;  a = Δx · f̂ + 60 m/s² T² +
-///        count,
+///        |f| <= min(e′ / a, max(P, |f₋₁| − k_max |Δx̂| − 0.08 N)),   a = Δx · f̂ + 60 m/s² T² (1 + delay / T) + count,
+///        P = e″ / ((n + 1) â) + n k â / 2,  n the most with k â² n (n + 1) / 2 <= e″,   k = min(0.9 k_max, 1.25 K).
 ///
-///    k = min(k_max, 1.25 K); e′ is e + w less what forces on their way will take. A force that ends with its energy so
-///    falls by k a a period at most. Where a < 0 the tank only fills: |f| <= √(2 k e′) − k a.
+///    e′ is e + w less what forces on their way will take, by the longer of two delays. It keeps e >= 0. P lets a force
+///    that ends with its energy fall by k â a period at most: it takes the motion Δx̂ that goes on as the arm has sped
+///    up, without its counts (â as a, with Δx̂), and e″ = e′ − ½ f₋₁ · Δx̂. f₋₁ is the force of the period before. Where
+///    a < 0 the tank only fills: P = √(2 k e″) − k â.
 ///    A landing lends w = ½ K b², b = ½ count + a of a hand at rest: so much a spring of K lacks, pressed slowly from
 ///    nothing, to keep what the limit of |f| asks for. w ends linearly between 2 b and 4 b of the contact's path.
 ///
@@ -64,6 +66,7 @@ struct LawState {
     Vec3 arm{0};                  ///< x of the period before, m
     Quat rotation{1, 0, 0, 0};    ///< q of the period before
     Vec3 arm_velocity{0};         ///< v_x, m/s, low-passed
+    Vec3 arm_velocity_before{0};  ///< m/s, v_x low-passed once more: 4 ms behind it
     Vec3 root{0};                 ///< y, m
     Vec3 root_velocity{0};        ///< v, m/s
     Vec3 restored{0};             ///< s, m

@@ -14,20 +14,15 @@ TrialOptions options_for(const DeviceLimits& limits, double delay = 0) {
     return {.law = {.limits = limits, .delay = delay}, .delay = delay, .jitter = delay > 0 ? 5e-4 : 0, .seconds = 2.5};
 }
 
-/// |Δf| in a period beyond k_max |Δx|, N: what a count of noise makes in spring and damper, and the fade (0.13 Touch,
-/// 0.14 Inverse3, 0.33 Falcon, 0.11 omega.6), or the end of a tank by the motion of a hand at 60 m/s² and a count.
+/// |Δf| in a period beyond k_max |Δx|, N: what a hand may feel as a step. What a count of noise makes in spring and
+/// damper, with the fade, is 0.13 on Touch, 0.14 on Inverse3, 0.33 on Falcon, 0.11 on omega.6.
 double allowed_step(const DeviceLimits& limits) {
-    const double K = limits.coupling, B = 2 * std::sqrt(K * 0.02);
-    const double noise = K * limits.count + 0.2 * B * limits.count / kPeriod + 0.06;
-    const double tank = 1.25 * K * (60 * kPeriod * kPeriod + limits.count);
-    return std::max(noise, tank) + 0.03;  // 0.03: read places, a count apart from true ones
+    return limits.name == "falcon" ? 0.35 : 0.15;
 }
 
-/// Hair that is lifted at 0.5 m/s loses more than it stored, and the tank ends. What forces on their way will take is
-/// foreseen by the last motion, whose counts of 55 µm on Touch are 0.1 N a period and more with each millisecond.
-double allowed_tap_step(const DeviceLimits& limits, double delay) {
-    if (limits.name != "touch") return allowed_step(limits);
-    return delay > 1e-3 ? 0.4 : 0.2 + 40 * delay;
+/// Goat hair tapped on the sheet makes steps of 0.19 N on Touch, where the arm is slow against its counts.
+double allowed_tap_step(const DeviceLimits& limits) {
+    return limits.name == "touch" ? 0.2 : allowed_step(limits);
 }
 
 /// `device`: one in turn for each motion, the first motion on the device of this number; negative: all for each.
@@ -46,7 +41,7 @@ void expect_passive(const std::string& place, const std::string& brush, double d
             // A contact gives back no more than it took: 1 µJ is a hundredth of what a light touch stores.
             EXPECT_GE(r.least_energy, -kMicrojoule);
             EXPECT_GE(r.least_with_arm, -kMicrojoule);
-            EXPECT_LE(r.largest_step, is_tap(motion) ? allowed_tap_step(limits, delay) : allowed_step(limits));
+            EXPECT_LE(r.largest_step, is_tap(motion) ? allowed_tap_step(limits) : allowed_step(limits));
             EXPECT_LE(r.largest_force, std::min(limits.max_force, kForceLimit) + 1e-9);
             EXPECT_GT(r.contacts, 0u);
         }
@@ -203,7 +198,7 @@ TEST(Trial, ASpringThatTheFadeStretchedGivesNothingBack) {
     const TrialReport r =
         run_trial(tuft, *f.surface, hand_path(HandMotion::taps, f.place, tuft.preset, hand.path), hand.options);
     EXPECT_GE(r.least_energy, -kMicrojoule);
-    EXPECT_LE(r.largest_step, allowed_tap_step(device_preset("touch"), 0));
+    EXPECT_LE(r.largest_step, allowed_step(device_preset("touch")));
     EXPECT_GT(r.contacts, 5u);
 }
 
