@@ -428,9 +428,9 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas, con
 
     const std::size_t n_slots = map.tile_of_slot.size();
     const bool packed = is_packed(store, atlas.size);
-    map.tiles.resize(n_slots);
-    map.shapes.resize(packed ? 0 : n_slots);
-    map.packed.resize(packed ? n_slots : 0);
+    resize_in_large_pages(map.tiles, n_slots);
+    resize_in_large_pages(map.shapes, packed ? 0 : n_slots);
+    resize_in_large_pages(map.packed, packed ? n_slots : 0);
     map.reach.assign(n_slots, 0);
     FilledTiles filled = fill_tiles(mesh, atlas, bands, map);
     if (!(map.texel_size > 0)) map.texel_size = mean_texel_size(map);
