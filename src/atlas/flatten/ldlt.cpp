@@ -8,6 +8,8 @@
 
 #include "atlas/flatten/dissection.h"
 #include "core/simd.h"
+#include "core/system/memory.h"
+#include "core/system/parallel.h"
 
 namespace tuft::atlas {
 namespace {
@@ -191,11 +193,14 @@ struct LdltFactor::Rows {
     }
 };
 
-/// What fronts leave of the columns beyond their pivots, until their parents take it.
+/// What fronts leave of the columns beyond their pivots, until their parents take it. One for each thread.
 struct LdltFactor::Stack {
     std::vector<double> values;           ///< column by column, the lower half of a square each
     std::vector<std::uint32_t> fronts;    ///< whose they are
     std::vector<std::uint32_t> in_front;  ///< of each row of L: its row in the front being assembled
+    std::vector<double> dense;            ///< the front being factored, column by column
+
+    explicit Stack(std::size_t n_rows) : in_front(n_rows) {}
 };
 
 void LdltFactor::find_fronts(const Rows& rows) {
@@ -211,8 +216,10 @@ void LdltFactor::find_fronts(const Rows& rows) {
             beyond_.push_back(row);
         };
         for (std::size_t i = rows.start[front.first]; i < rows.start[last]; ++i) meet(rows.column[i]);
+        front.subtree = s;
         for (std::uint32_t c = 0; c < front.n_children; ++c) {
             const Front& child = fronts_[roots.back()];
+            front.subtree = child.subtree;
             roots.pop_back();
             for (std::size_t i = 0; i < child.n_beyond; ++i) meet(beyond_[child.beyond + i]);
         }
@@ -223,17 +230,21 @@ void LdltFactor::find_fronts(const Rows& rows) {
         front.values = size;
         size += std::size_t{front.n_pivots} * front.stride;
     }
-    if (size > n_values_) values_ = std::make_unique_for_overwrite<double[]>(n_values_ = size);
+    n_values_used_ = size;
+    if (size > n_values_) {
+        values_ = std::make_unique_for_overwrite<double[]>(n_values_ = size);
+        prefer_large_pages(values_.get(), sizeof(double) * size);
+    }
 }
 
 /// Makes the lower half of the front from the matrix and what its children left.
 void LdltFactor::assemble(const Rows& rows, const Front& front, Stack& stack) {
     const std::size_t stride = front.stride;
-    dense_.assign(stride * (front.n_pivots + front.n_beyond), 0);
+    stack.dense.assign(stride * (front.n_pivots + front.n_beyond), 0);
     for (std::uint32_t i = 0; i < front.n_pivots; ++i) stack.in_front[front.first + i] = i;
     for (std::uint32_t i = 0; i < front.n_beyond; ++i) stack.in_front[beyond_[front.beyond + i]] = front.n_pivots + i;
     for (std::uint32_t j = 0; j < front.n_pivots; ++j) {
-        double* const column = dense_.data() + j * stride;
+        double* const column = stack.dense.data() + j * stride;
         column[j] = rows.diagonal[front.first + j];
         for (std::size_t i = rows.start[front.first + j]; i < rows.start[front.first + j + 1]; ++i)
             column[stack.in_front[rows.column[i]]] += rows.value[i];
@@ -245,11 +256,56 @@ void LdltFactor::assemble(const Rows& rows, const Front& front, Stack& stack) {
         const std::uint32_t* const row = beyond_.data() + child.beyond;
         const double* const left = stack.values.data() + stack.values.size() - n * n;
         for (std::size_t j = 0; j < n; ++j) {
-            double* const column = dense_.data() + stack.in_front[row[j]] * stride;
+            double* const column = stack.dense.data() + stack.in_front[row[j]] * stride;
             for (std::size_t i = j; i < n; ++i) column[stack.in_front[row[i]]] += left[j * n + i];
         }
         stack.values.resize(stack.values.size() - n * n);
     }
+}
+
+/// Factors one after the other all fronts of whole subtrees, or one whose children are on the stack.
+bool LdltFactor::factor_in_turn(const Rows& rows, std::uint32_t first, std::uint32_t last, Stack& stack) {
+    for (std::uint32_t s = first; s < last; ++s) {
+        const Front& front = fronts_[s];
+        const std::uint32_t size = front.n_pivots + front.n_beyond;
+        assemble(rows, front, stack);
+        double* const dense = stack.dense.data();
+        if (!eliminate(dense, front.stride, size, front.n_pivots, inverse_.data() + front.first)) return false;
+        std::memcpy(values_.get() + front.values, dense, sizeof(double) * front.n_pivots * std::size_t{front.stride});
+        for (std::uint32_t c = front.n_pivots; c < size; ++c) {
+            const double* const column = dense + c * std::size_t{front.stride};
+            stack.values.insert(stack.values.end(), column + front.n_pivots, column + size);
+        }
+        stack.fronts.push_back(s);
+    }
+    return true;
+}
+
+/// Factors the fronts `first` to `last` − 1, whole subtrees, the large ones at the same time, and leaves on the stack
+/// what their roots leave.
+bool LdltFactor::factor(const Rows& rows, std::uint32_t first, std::uint32_t last, Stack& stack) {
+    constexpr std::size_t kLarge = 1 << 18;  // numbers of L
+    const auto begins_at = [&](std::uint32_t s) { return s < fronts_.size() ? fronts_[s].values : n_values_used_; };
+    if (begins_at(last) - begins_at(first) < kLarge) return factor_in_turn(rows, first, last, stack);
+    std::vector<std::uint32_t> roots;
+    for (std::uint32_t end = last; end > first; end = fronts_[end - 1].subtree) roots.push_back(end - 1);
+    std::reverse(roots.begin(), roots.end());
+    if (roots.size() == 1) return factor(rows, first, last - 1, stack) && factor_in_turn(rows, last - 1, last, stack);
+    std::vector<Stack> parts(roots.size(), Stack(0));
+    std::vector<std::uint8_t> done(roots.size(), 0);
+    parallel_for(roots.size(), 1, [&](std::size_t k, std::size_t end) {
+        for (; k < end; ++k) {
+            parts[k].in_front.resize(place_.size());
+            done[k] = factor(rows, fronts_[roots[k]].subtree, roots[k] + 1, parts[k]);
+            parts[k].in_front = {};
+            parts[k].dense = {};
+        }
+    });
+    for (const Stack& part : parts) {
+        stack.values.insert(stack.values.end(), part.values.begin(), part.values.end());
+        stack.fronts.insert(stack.fronts.end(), part.fronts.begin(), part.fronts.end());
+    }
+    return std::find(done.begin(), done.end(), 0) == done.end();
 }
 
 bool LdltFactor::compute(SymmetricMatrix matrix, std::span<const Vec2> at) {
@@ -269,22 +325,8 @@ bool LdltFactor::compute(SymmetricMatrix matrix, std::span<const Vec2> at) {
     graph = {};
     find_fronts(rows);
     inverse_.resize(n);
-    Stack stack;
-    stack.in_front.resize(n);
-    for (std::uint32_t s = 0; s < fronts_.size(); ++s) {
-        const Front& front = fronts_[s];
-        const std::uint32_t size = front.n_pivots + front.n_beyond;
-        assemble(rows, front, stack);
-        if (!eliminate(dense_.data(), front.stride, size, front.n_pivots, inverse_.data() + front.first)) return false;
-        std::memcpy(values_.get() + front.values, dense_.data(),
-                    sizeof(double) * front.n_pivots * std::size_t{front.stride});
-        for (std::uint32_t c = front.n_pivots; c < size; ++c) {
-            const double* const column = dense_.data() + c * std::size_t{front.stride};
-            stack.values.insert(stack.values.end(), column + front.n_pivots, column + size);
-        }
-        stack.fronts.push_back(s);
-    }
-    return true;
+    Stack stack(n);
+    return factor(rows, 0, static_cast<std::uint32_t>(fronts_.size()), stack);
 }
 
 void LdltFactor::solve(std::span<Vec2> x) {

@@ -22,8 +22,9 @@ struct SymmetricMatrix {
 };
 
 /// A = Pᵀ L D Lᵀ P with unit lower L and diagonal D, in the order of `dissect`. Multifrontal [Duff1983]: what the
-/// vertices of one part of the dissection and their later neighbours have in common is one dense matrix. No pivoting,
-/// one thread. The order of all sums is fixed, so that the bits do not depend on the CPU.
+/// vertices of one part of the dissection and their later neighbours have in common is one dense matrix. No pivoting.
+/// The order of all sums is fixed, so that the bits depend neither on the CPU nor on the number of threads, which
+/// factor subtrees.
 class LdltFactor {
   public:
     /// Factors a matrix. `at` [n] is where its rows lie: any numbers will do, the nearer those that share entries the
@@ -38,6 +39,7 @@ class LdltFactor {
         std::uint32_t first = 0, n_pivots = 0;  ///< rows of L
         std::uint32_t n_beyond = 0;             ///< rows that its columns reach beyond its pivots
         std::uint32_t n_children = 0, stride = 0;
+        std::uint32_t subtree = 0;           ///< first of the fronts that end in this one
         std::size_t beyond = 0, values = 0;  ///< where these begin in `beyond_` and `values_`
     };
     struct Rows;
@@ -45,15 +47,16 @@ class LdltFactor {
 
     void find_fronts(const Rows& rows);
     void assemble(const Rows& rows, const Front& front, Stack& stack);
-    bool factor(const Front& front);
+    bool factor_in_turn(const Rows& rows, std::uint32_t first, std::uint32_t last, Stack& stack);
+    bool factor(const Rows& rows, std::uint32_t first, std::uint32_t last, Stack& stack);
 
     std::vector<std::uint32_t> place_;   ///< row of L of each row of the matrix
     std::vector<Front> fronts_;          ///< children before parents
     std::vector<std::uint32_t> beyond_;  ///< rows of L, ascending for each front
     std::unique_ptr<double[]> values_;   ///< of L, column by column
     std::size_t n_values_ = 0;           ///< that there is room for
-    std::vector<double> inverse_;        ///< 1 / D
-    std::vector<double> dense_;          ///< the front being factored, column by column
+    std::size_t n_values_used_ = 0;
+    std::vector<double> inverse_;  ///< 1 / D
     std::vector<double> x_, y_, x_front_, y_front_;
 };
 
