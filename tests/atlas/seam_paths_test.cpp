@@ -72,7 +72,7 @@ TEST(SeamPaths, CornersMoveToWhereSeamsAreShortest) {
     const ThreeCharts sheet;
     for (const Corners corners : {Corners::stay, Corners::move}) {
         SeamPaths paths(sheet.patch, sheet.seam);
-        PathSearch search(sheet.patch);
+        PathSearch search = paths.make_search();
         for (int round = 0; round < 20; ++round) {
             const SeamMove move = paths.shorten(sheet.slanting(paths), 0.25f, corners, search);
             if (move.path.empty()) break;
@@ -93,7 +93,7 @@ TEST(SeamPaths, CornersMoveToWhereSeamsAreShortest) {
 TEST(SeamPaths, MovesCanBeTakenBack) {
     const ThreeCharts sheet;
     SeamPaths paths(sheet.patch, sheet.seam);
-    PathSearch search(sheet.patch);
+    PathSearch search = paths.make_search();
     const std::vector<std::uint32_t> charts = paths.charts();
     SeamMove move = paths.shorten(sheet.slanting(paths), 0.25f, Corners::move, search);
     ASSERT_FALSE(move.path.empty());

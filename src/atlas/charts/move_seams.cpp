@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <mutex>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -44,8 +45,7 @@ class Mover {
           least_value_(mesh.n_triangles() < kBlockwiseThreshold ? kLeastValue : kLeastValueLarge),
           n_represented_(n_represented(mesh, cut)),
           budget_(cut, options.l2_all),
-          patch_(whole_patch(mesh, cut)),
-          paths_(patch_, seam_flags(cut), chart_of(mesh, cut)) {
+          paths_(whole_patch(mesh, cut), seam_flags(cut), chart_of(mesh, cut)) {
         number_charts(cut);
     }
 
@@ -58,8 +58,17 @@ class Mover {
             for (Trial& t : trials) apply(t);
             std::stable_sort(trials.begin(), trials.end(),
                              [&](const Trial& a, const Trial& b) { return n_triangles(a) > n_triangles(b); });
-            const auto size = [&](std::size_t i) { return double(n_triangles(trials[i])); };
-            run_tasks_within(trials.size(), flattened_at_once(mesh_.n_triangles()), size, [&](std::size_t i) {
+            std::vector<double> size(trials.size());
+            for (std::size_t i = 0; i < size.size(); ++i) {
+                work += double(n_triangles(trials[i]));
+                size[i] = flattened(trials[i]);
+            }
+            // Each is concluded as soon as those before it are, so that few are in memory.
+            std::mutex mutex;
+            std::vector<std::uint8_t> done(trials.size(), 0);
+            std::size_t next = 0;
+            const auto weight = [&](std::size_t i) { return size[i]; };
+            run_tasks_within(trials.size(), flattened_at_once(mesh_.n_triangles()), weight, [&](std::size_t i) {
                 Trial& t = trials[i];
                 TaskProgress part(phase, double(n_triangles(t)));
                 t.good = true;
@@ -67,12 +76,13 @@ class Mover {
                 const int first = t.swept[0].size() > t.swept[1].size();
                 for (int k = 0; k < t.n_charts() && t.good; ++k) t.good = flatten_side(t, first ^ k);
                 part.finish();
+                const std::scoped_lock lock(mutex);
+                for (done[i] = 1; next < trials.size() && done[next]; ++next) {
+                    conclude(trials[next]);
+                    moved = moved || trials[next].good;
+                    trials[next] = {};
+                }
             });
-            for (Trial& t : trials) {
-                work += double(n_triangles(t));
-                conclude(t);
-                moved = moved || t.good;
-            }
         }
         return moved;
     }
@@ -94,14 +104,25 @@ class Mover {
         return cut_.charts[t.chart[0]].mesh.faces.size() + cut_.charts[t.chart[1]].mesh.faces.size();
     }
 
+    /// Triangles that a trial lays flat at once: one chart after the other, of a large one a part.
+    double flattened(const Trial& t) const {
+        double most = 0;
+        for (int side = 0; side < t.n_charts(); ++side) {
+            const std::size_t n = cut_.charts[t.chart[side]].mesh.faces.size();
+            const std::size_t come = t.n_charts() == 1 ? n : t.swept[1 - side].size();
+            most = std::max(most, n > kLargeChart ? double(n) / 4 + double(faces_anew(n, come)) : double(n + come));
+        }
+        return most;
+    }
+
     /// The newest version of each chart and those next to it.
     std::vector<std::uint32_t> newest_versions() const {
         std::vector<std::uint32_t> newest(cut_.charts.size());
         for (std::size_t c = 0; c < newest.size(); ++c) newest[c] = cut_.charts[c].version;
         for (std::uint32_t h = 0; h < paths_.seams().size(); ++h) {
-            if (!paths_.seams()[h] || patch_.twin[h] == kNone) continue;
+            if (!paths_.seams()[h] || paths_.twin(h) == kNone) continue;
             std::uint32_t& own = newest[paths_.charts()[h / 3]];
-            own = std::max(own, cut_.charts[paths_.charts()[patch_.twin[h] / 3]].version);
+            own = std::max(own, cut_.charts[paths_.charts()[paths_.twin(h) / 3]].version);
         }
         return newest;
     }
@@ -127,7 +148,7 @@ class Mover {
             return;
         }
         double length = 0;
-        for (const std::uint32_t g : c.chain) length += patch_.length[g];
+        for (const std::uint32_t g : c.chain) length += paths_.length(g);
         const double work = double(n_triangles(c.trial)) / n_represented_;
         const double least = std::max(kLeastSaved * length, least_value_ * work);
         for (; *c.rejected < kReaches; ++*c.rejected) {
@@ -147,14 +168,14 @@ class Mover {
             if (seen[h] || !paths_.starts_chain(h)) continue;
             Candidate c;
             c.chain = paths_.chain_from(h);
-            for (const std::uint32_t g : c.chain) seen[g] = seen[patch_.twin[g]] = 1;
-            c.trial.chart = {paths_.charts()[h / 3], paths_.charts()[patch_.twin[h] / 3]};
+            for (const std::uint32_t g : c.chain) seen[g] = seen[paths_.twin(g)] = 1;
+            c.trial.chart = {paths_.charts()[h / 3], paths_.charts()[paths_.twin(h) / 3]};
             c.trial.change = {h, cut_.charts[c.trial.chart[0]].version, cut_.charts[c.trial.chart[1]].version};
             c.rejected = &cut_.rejected.moved[c.trial.change];
             c.around = {h, newest[c.trial.chart[0]], newest[c.trial.chart[1]]};
             candidates.push_back(std::move(c));
         }
-        while (searches_.size() < static_cast<std::size_t>(thread_count())) searches_.emplace_back(patch_);
+        while (searches_.size() < static_cast<std::size_t>(thread_count())) searches_.push_back(paths_.make_search());
         run_tasks_by_worker(candidates.size(),
                             [&](std::size_t i, std::size_t worker) { search(candidates[i], searches_[worker]); });
         std::map<RejectedChanges::Change, Found> found;
@@ -302,7 +323,6 @@ class Mover {
     double least_value_;
     double n_represented_;  // triangles of the mesh and of what equals its parts
     StretchBudget budget_;
-    Patch patch_;
     SeamPaths paths_;
     std::vector<PathSearch> searches_;  // of each thread
 

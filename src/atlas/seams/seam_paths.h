@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "atlas/seams/half_edges.h"
+#include "core/system/memory.h"
 
 /// \file
 /// Seam moves along shortest paths, with both charts remaining disks. Used by move_seams.h and straighten.h.
@@ -24,21 +25,28 @@ enum class Corners { stay, move };
 /// Scratch buffers of a path search; one for each thread.
 class PathSearch {
   public:
-    explicit PathSearch(const Patch& patch)
-        : band_(patch.n_vertices, kFar),
-          distance_(patch.n_vertices, kFar),
-          weight_from_(patch.n_vertices, kNone),
-          start_(patch.n_vertices, 0),
-          goal_(patch.twin.size(), 0) {}
+    PathSearch(std::size_t n_vertices, std::size_t n_half_edges) : goal_(n_half_edges, 0) {
+        resize_in_large_pages(at_, n_vertices);
+    }
 
   private:
     friend class SeamPaths;
     static constexpr float kFar = std::numeric_limits<float>::infinity();
-    std::vector<float> band_, distance_;         // by vertex
-    std::vector<std::uint32_t> weight_from_;     // by vertex
-    std::vector<std::uint8_t> start_, goal_;     // by vertex, by half-edge
+    struct Reached {
+        float distance;
+        std::uint32_t vertex, half;  // one that leaves the vertex
+    };
+    /// A vertex: how far it is from the chain, and how far and by which half-edge from the start of the path.
+    struct Vertex {
+        float band = kFar, distance = kFar;
+        std::uint32_t reached_by = kNone;
+        bool is_start = false;
+    };
+    std::vector<Vertex> at_;
+    std::vector<std::uint8_t> goal_;             // by half-edge
     std::vector<std::uint32_t> starts_, goals_;  // half-edges that leave them
     std::vector<std::uint32_t> marked_, touched_;
+    std::vector<std::vector<Reached>> by_distance_;  // of the band, steps of about an edge
 };
 
 /// Where the seams of a patch run, chain by chain. Corners are places where three or more
@@ -50,16 +58,21 @@ class PathSearch {
 class SeamPaths {
   public:
     /// `seam` [3n], borders included; `chart` [n] of each triangle, found from the seams when
-    /// it is empty.
+    /// it is empty. The patch is not needed afterwards.
     SeamPaths(const Patch& patch, std::vector<std::uint8_t> seam, std::vector<std::uint32_t> chart = {});
 
     const std::vector<std::uint8_t>& seams() const { return seam_; }
     const std::vector<std::uint32_t>& charts() const { return chart_; }
 
+    /// As in the patch.
+    std::uint32_t twin(std::uint32_t h) const { return half_[h].twin; }
+    float length(std::uint32_t h) const { return half_[h].length; }
+
+    /// Returns scratch buffers for `shorten`.
+    PathSearch make_search() const { return {degree_.size(), half_.size()}; }
+
     /// Whether a chain starts with this half-edge.
-    bool starts_chain(std::uint32_t h) const {
-        return seam_[h] && patch_.twin[h] != kNone && is_corner(patch_.vertex[h]);
-    }
+    bool starts_chain(std::uint32_t h) const { return seam_[h] && twin(h) != kNone && is_corner(origin(h)); }
     /// Returns the half-edges of the chain that starts with h, in order.
     std::vector<std::uint32_t> chain_from(std::uint32_t h) const;
 
@@ -73,16 +86,24 @@ class SeamPaths {
 
   private:
     static constexpr float kFar = PathSearch::kFar;
+    /// What a search asks of a half-edge together: those of a triangle lie in one or two lines of the cache.
+    struct Half {
+        std::uint32_t twin = kNone, origin = 0;
+        float length = 0;
+        float weight = 0;  ///< of its edge
+    };
     struct Entry {
         float distance;
-        std::uint32_t vertex, half;  // a half-edge that leaves (band) or reaches (path) the vertex
+        std::uint32_t vertex, half;  // a half-edge that reaches the vertex
         bool operator<(const Entry& o) const { return distance != o.distance ? distance > o.distance : half > o.half; }
     };
     using Queue = std::priority_queue<Entry>;
 
-    std::uint32_t origin(std::uint32_t h) const { return patch_.vertex[h]; }
-    std::uint32_t end(std::uint32_t h) const { return patch_.vertex[next_half(h)]; }
+    std::uint32_t origin(std::uint32_t h) const { return half_[h].origin; }
+    std::uint32_t end(std::uint32_t h) const { return half_[next_half(h)].origin; }
     bool is_corner(std::uint32_t v) const { return corner_[v] || degree_[v] != 2; }
+    template <class Visit>
+    void around(std::uint32_t start, Visit&& visit) const;
     std::uint32_t onward(std::uint32_t h) const;
     std::vector<std::uint32_t> wedge(std::uint32_t h) const;
     void slide(std::uint32_t h, float reach, std::vector<std::uint32_t>& starts) const;
@@ -92,10 +113,9 @@ class SeamPaths {
     void set_seam(std::uint32_t h, bool on);
     void sweep(std::uint32_t start, std::uint32_t chart, std::vector<std::uint32_t>* swept);
 
-    const Patch& patch_;
+    std::vector<Half> half_;
     std::vector<std::uint8_t> seam_;
     std::vector<std::uint32_t> chart_;
-    std::vector<float> weight_;                  // of edges, by half-edge
     std::vector<std::uint32_t> degree_;          // of vertices, borders included
     std::vector<std::uint8_t> border_, corner_;  // of vertices
     std::vector<std::uint32_t> queue_;

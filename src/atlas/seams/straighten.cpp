@@ -12,7 +12,7 @@ constexpr float kReach = 0.25f;  // how far a seam may leave its chain, over the
 
 void straighten_seams(const Patch& patch, std::vector<std::uint8_t>& seam) {
     SeamPaths paths(patch, std::move(seam));
-    PathSearch search(patch);
+    PathSearch search = paths.make_search();
     for (int round = 0; round < kRounds; ++round) {
         std::vector<std::uint8_t> seen(paths.seams().size(), 0);
         const auto see = [&](const std::vector<std::uint32_t>& halves) {
