@@ -113,14 +113,23 @@ double width_of_head(const BrushHand& hand, const Pace& pace, double inside) {
     return width_at(first + inside);
 }
 
-// Before a stroke is drawn: the cells of such a character are smaller than the print of a hair.
-TEST(Writer, ACharacterFarTooSmallForTheFinestBrushIsRefused) {
-    const Glyph glyph = bundled(U'一');
-    const auto write = [&](double side) {
-        return Writer({.style = load_style("kaishu"), .side = side}).write({glyph});
-    };
-    EXPECT_THROW(write(1e-5), Error);
-    EXPECT_NO_THROW(write(0.01));
+// Before a stroke is drawn: the cells of such a character are smaller than the print of a hair. The size that the fault
+// names is accepted, and a tenth less is not: it has two digits, rounded up.
+TEST(Writer, ACharacterTooSmallForABrushIsRefusedWithTheSizeThatWillDo) {
+    const Glyph dot{.code = U'丶', .strokes = {{.median = {{500, 520}, {530, 500}}}}};
+    Style style = load_style("kaishu");
+    style.tries = 1;
+    const auto write = [&](double side) { return Writer({.style = style, .side = side}).write({dot}); };
+    double enough = 0;
+    try {
+        write(1e-5);
+    } catch (const Error& error) {
+        const std::string fault = error.what();
+        enough = std::stod(fault.substr(fault.rfind("from ") + 5)) * 1e-3;
+    }
+    ASSERT_GT(enough, 1e-5);
+    EXPECT_THROW(write(0.9 * enough), Error);
+    EXPECT_NO_THROW(write(enough)) << enough;
 }
 
 TEST(BrushHand, AHeadIsSetDownAcrossThePathAndIsRounderForIt) {
