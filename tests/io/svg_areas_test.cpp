@@ -370,5 +370,32 @@ TEST(SvgAreas, DrawingsThatNeverEndAreRefusedInALine) {
     EXPECT_NE(fault("<rect width='1e9' height='1e9' fill='red' transform='scale(1e9)'/>"), "");
 }
 
+/// Parts of a later area that an earlier one goes on under, mm².
+double under(const std::string& inside, std::size_t k) {
+    FlatArea area = read(inside).areas.at(k);
+    if (area.under.empty()) return 0;
+    area.rings = area.under, area.even_odd = false;
+    return covered(area, 0.05);
+}
+
+TEST(SvgAreas, AnAreaReachesUnderALaterOneAtASharedEdge) {
+    // The drawing is 100 mm large: 2 mm deep from a strip of 0.05 mm along 40 mm, and a quarter of a disc beyond both
+    // ends, less at its middle by what the strip's round ends lack.
+    const double depth = 2.05;
+    const std::string page = "<rect width='100' height='100' fill='#eee'/>";
+    const std::string left = "<path d='M10 20h30v40H10z' fill='#00f'/>";
+    const std::string right = "<path d='M40 10h30v60H40z' fill='#0a0'/>";
+    EXPECT_NEAR(under(page + left + right, 1), depth * 40 + 0.5 * std::numbers::pi * depth * depth, 0.6);
+    EXPECT_EQ(under(page + left + right, 0), 0) << "the ground lies under both";
+    EXPECT_EQ(under(page + left + right, 2), 0) << "nothing lies over the last";
+    EXPECT_NEAR(under(page + right + left, 1), depth * 40, 0.1) << "no farther than the later one";
+    EXPECT_EQ(under(left + "<path d='M40.2 10h30v60h-30z' fill='#0a0'/>", 0), 0) << "a gap";
+    EXPECT_EQ(under(left + "<path d='M39 10h31v60h-31z' fill='#0a0'/>", 0), 0) << "laps already";
+    EXPECT_EQ(under(left + "<path d='M40 10h30v60h-30z' fill='#0a0' opacity='.5'/>", 0), 0) << "would show through";
+    EXPECT_EQ(under("<path d='M10 20h30v40H10z' fill='#00f' stroke='#000' stroke-width='2'/>", 0), 0)
+        << "the line lies on both sides of the edge";
+    EXPECT_EQ(under(left + "<path d='M12 22h10v10H12z' fill='#0a0'/>", 0), 0) << "inside";
+}
+
 }  // namespace
 }  // namespace tuft::io

@@ -52,6 +52,7 @@ void raise_format_for(SQLite::Database& db, const stroke::JournalEntry& entry) {
          (fill->area->edges != stroke::AreaEdges::facing || fill->area->gradient == stroke::AreaGradient::image)) ||
         (mask && mask->mask.kind == stroke::MaskKind::clear))
         raise_format(db, kEdgesFormat);
+    if (fill && fill->area && !fill->area->under.empty()) raise_format(db, kUnderFormat);
 }
 
 }  // namespace

@@ -194,6 +194,22 @@ Shape Shape::without(const Shape& other) const {
     return empty() || other.empty() ? *this : combined(other, clip::ctDifference);
 }
 
+Shape Shape::grown(double d, double tolerance) const {
+    // The grid has no points beyond its extent.
+    std::vector<Ring> all = rings_;
+    for (const Ring& ring : rings_)
+        for (const Vec2& p : ring) all.push_back({p - d, p + d});
+    Shape shape;
+    const Grid grid(all);
+    if (empty() || grid.scale == 0) return shape;
+    clip::ClipperOffset offset(2, std::max(0.25, tolerance * grid.scale));
+    offset.AddPaths(grid.paths(rings_), clip::jtRound, clip::etClosedPolygon);
+    clip::Paths out;
+    offset.Execute(out, d * grid.scale);
+    shape.rings_ = grid.rings(out);
+    return shape;
+}
+
 Shape Shape::inset(double d, double tolerance) const {
     // A jagged outline crosses itself at d over the distance of its points: small steps first, each
     // of which leaves fewer points to the next, twice as long.

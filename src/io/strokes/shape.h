@@ -36,6 +36,9 @@ class Shape {
     /// Returns the part more than `d` metres inside. `tolerance`: largest error of the distance, metres.
     Shape inset(double d, double tolerance) const;
 
+    /// Returns the points within `d` metres of the shape, corners round to `tolerance` metres.
+    Shape grown(double d, double tolerance) const;
+
     /// Return what lies in both shapes, and what lies in this one alone. Empty for more than `kMostPoints` points.
     Shape intersected(const Shape& other) const;
     Shape without(const Shape& other) const;

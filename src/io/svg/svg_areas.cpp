@@ -10,6 +10,7 @@
 #include "ink/spectra/colorimetry.h"
 #include "ink/spectra/srgb.h"
 #include "io/svg/style/svg_page.h"
+#include "io/svg/svg_seams.h"
 #include "io/svg/svg_stroke.h"
 
 namespace tuft::io {
@@ -138,6 +139,7 @@ class AreaMaker {
         for (const std::vector<PaintedPart>& parts : all)
             for (const PaintedPart& part : parts) add(part);
         frame();
+        run_under();
         return std::move(out_);
     }
 
@@ -329,13 +331,20 @@ class AreaMaker {
         area.focus = g.focus;
     }
 
+    static stroke::FlatArea& area_of(stroke::RecordedStroke& r) {
+        return *std::get<stroke::Fill>(r.before.front()).area;
+    }
+
+    void run_under() {
+        std::vector<stroke::FlatArea*> areas;
+        for (stroke::RecordedStroke& recorded : out_) areas.push_back(&area_of(recorded));
+        set_under(areas);
+    }
+
     // Bounds of the drawing, and middles of what stays upright.
     void frame() {
         Vec2 low(HUGE_VAL), high(-HUGE_VAL);
         std::map<std::string, std::pair<Vec2, Vec2>> upright;
-        const auto area_of = [](stroke::RecordedStroke& r) -> stroke::FlatArea& {
-            return *std::get<stroke::Fill>(r.before.front()).area;
-        };
         for (stroke::RecordedStroke& recorded : out_) {
             stroke::FlatArea& area = area_of(recorded);
             auto& part = upright.try_emplace(area.reading.part, Vec2(HUGE_VAL), Vec2(-HUGE_VAL)).first->second;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/system/parallel.h"
 #include "ink/exchange/erase.h"
@@ -62,12 +63,43 @@ struct TileArea {
     bool any = false;
 };
 
-void find_cover(TileArea& out, const FlatTexels::Tile& tile, const FlatArea& area, const AreaRaster& raster,
+/// Coverage of texels `width` wide by an area and by what it reaches under.
+class AreaCover {
+  public:
+    AreaCover(const FlatArea& area, const SurfaceLattice& lattice, double width)
+        : width_(width), own_(raster_of(area, lattice, 0.5 * width)) {
+        if (area.under.empty()) return;
+        under_.emplace(FlatArea{.rings = area.under, .placement = {}, .stops = {}}, 0.5 * width);
+    }
+
+    double at(const Vec2& p) const {
+        const double own = own_.mean(p, width_);
+        if (!under_ || own >= 1 || !is_near(p)) return own;
+        return std::min(1.0, own + under_->mean(p, width_));
+    }
+    Vec2f low() const { return Vec2f(own_.low() - 2 * width_); }
+    Vec2f high() const { return Vec2f(own_.high() + 2 * width_); }
+
+  private:
+    // A texel a width from the area may lie partly beyond the later one's edge.
+    bool is_near(const Vec2& p) const {
+        for (int x = -1; x <= 1; ++x)
+            for (int y = -1; y <= 1; ++y)
+                if (own_.mean(p + width_ * Vec2(x, y), width_) > 0) return true;
+        return false;
+    }
+
+    double width_;
+    AreaRaster own_;
+    std::optional<AreaRaster> under_;
+};
+
+void find_cover(TileArea& out, const FlatTexels::Tile& tile, const FlatArea& area, const AreaCover& cover,
                 double width) {
     for (int t = 0; t < atlas::kTileTexels; ++t) {
         const Vec2 p(tile.at[t]);
         if (!(p.x == p.x)) continue;
-        const double c = raster.mean(p, width);
+        const double c = cover.at(p);
         if (c < 1.0 / 512) continue;
         out.cover[t] = static_cast<float>(c);
         out.blend[t] = area.stops.size() > 1 ? blend_at(area.stops, along_area(area, p, width)) : StopBlend{};
@@ -155,8 +187,8 @@ FillResult apply_area(const Fill& fill, const PaintTarget& target, const FlatTex
     const FlatArea& area = *fill.area;
     const atlas::TexelMap& map = target.model.texels;
     const double width = map.texel_size;
-    const AreaRaster raster = raster_of(area, texels.lattice(), 0.5 * width);
-    const Vec2f low(raster.low() - width), high(raster.high() + width);
+    const AreaCover cover(area, texels.lattice(), width);
+    const Vec2f low = cover.low(), high = cover.high();
     std::vector<const FlatTexels::Tile*> tiles, masked;
     for (const FlatTexels::Tile& tile : texels.tiles())
         if (tile.low.x <= high.x && tile.low.y <= high.y && tile.high.x >= low.x && tile.high.y >= low.y)
@@ -165,7 +197,7 @@ FillResult apply_area(const Fill& fill, const PaintTarget& target, const FlatTex
     std::vector<TileArea> parts(tiles.size());
     parallel_for(tiles.size(), 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            find_cover(parts[i], *tiles[i], area, raster, width);
+            find_cover(parts[i], *tiles[i], area, cover, width);
             if (parts[i].any && target.mask) target.mask->apply(tiles[i]->slot, parts[i].cover);
             for (int t = 0; t < atlas::kTileTexels; ++t) {
                 const auto [stop, towards] = parts[i].blend[t];
@@ -180,7 +212,7 @@ FillResult apply_area(const Fill& fill, const PaintTarget& target, const FlatTex
         if (parts[i].any) result.before.push_back(target.canvas.snapshot(tiles[i]->slot));
     result.met = !result.before.empty() || std::ranges::any_of(masked, [&](const FlatTexels::Tile* tile) {
         TileArea part;
-        find_cover(part, *tile, area, raster, width);
+        find_cover(part, *tile, area, cover, width);
         return part.any;
     });
 

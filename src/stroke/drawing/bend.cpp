@@ -70,7 +70,8 @@ void bend_samples(StrokeSamples& trace, double curvature, double width) {
 
 void bend_area(FlatArea& area, double curvature, double width) {
     if (is_flat(curvature, width)) return;
-    for (auto& ring : area.rings) bend_ring(ring, curvature, width);
+    for (auto* rings : {&area.rings, &area.under})
+        for (auto& ring : *rings) bend_ring(ring, curvature, width);
     for (auto& line : area.lines) bend_path(line, false, curvature, width);
     Vec2 low(HUGE_VAL), high(-HUGE_VAL);
     for (const auto& ring : area.rings)

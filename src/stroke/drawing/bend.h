@@ -17,7 +17,7 @@ Vec2 bend_point(const Vec2& point, double curvature);
 /// Bends samples, stencil and outline of a flat trace. Chords of outline and stencil are split, so that they are within
 /// 0.1 % of `width` of the arcs, with `width` that of the drawing, metres.
 void bend_samples(StrokeSamples& trace, double curvature, double width);
-/// Bends the rings and lines of an area in the same manner; its bounds become those of the rings. Its gradient does not
+/// Bends all rings and lines of an area in the same manner; its bounds become those of the rings. Its gradient does not
 /// bend.
 void bend_area(FlatArea& area, double curvature, double width);
 

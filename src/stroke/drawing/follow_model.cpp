@@ -58,7 +58,7 @@ void move_area(FlatArea& area, const ModelMotion& motion) {
     if (std::abs(scale - 1) > kSameScale) transform_area(area, Vec2(0), scale);
     if (!stretches(motion)) return;
     const Mat2 rest = without_scale(map);
-    for (auto* paths : {&area.rings, &area.lines})
+    for (auto* paths : {&area.rings, &area.lines, &area.under})
         for (auto& path : *paths)
             for (Vec2& p : path) p = rest * p;
     area.low = rest * area.low, area.high = rest * area.high, area.reading.centre = rest * area.reading.centre;

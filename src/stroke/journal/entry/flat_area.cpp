@@ -128,7 +128,7 @@ void check_stop(const AreaStop& stop, double before) {
 
 void check_area(const FlatArea& area) {
     std::size_t n = 0;
-    for (const auto* paths : {&area.rings, &area.lines})
+    for (const auto* paths : {&area.rings, &area.lines, &area.under})
         for (const auto& path : *paths) {
             n += path.size();
             for (const Vec2& p : path)
@@ -167,7 +167,7 @@ void transform_area(FlatArea& area, const Vec2& centre, double scale, bool mirro
         p = scale * (p - centre);
         p.x *= sign;
     };
-    for (auto* paths : {&area.rings, &area.lines})
+    for (auto* paths : {&area.rings, &area.lines, &area.under})
         for (auto& path : *paths)
             for (Vec2& p : path) move(p);
     move(area.low);
@@ -186,6 +186,7 @@ json json_of(const FlatArea& area) {
     json j;
     j["rings"] = json_of(area.rings);
     if (!area.lines.empty()) j["lines"] = json_of(area.lines);
+    if (!area.under.empty()) j["under"] = json_of(area.under);
     if (area.even_odd) j["even_odd"] = true;
     const Placement& place = area.placement;
     const auto triple = [](const Vec3& v) { return json::array({v.x, v.y, v.z}); };
@@ -230,6 +231,7 @@ FlatArea flat_area_of(const json& j) {
     try {
         area.rings = paths_in(j.at("rings"));
         if (j.contains("lines")) area.lines = paths_in(j.at("lines"));
+        if (j.contains("under")) area.under = paths_in(j.at("under"));
         area.even_odd = j.value("even_odd", false);
         area.placement.origin = triple_in(j.at("origin"));
         area.placement.right = triple_in(j.at("right"));

@@ -68,6 +68,9 @@ struct FlatArea {
     /// Of what is drawn as lines: their middles, open. A draped line is as wide on the model as it is drawn
     /// (surface/even_lines.h). Empty: a shape of its own.
     std::vector<std::vector<Vec2>> lines = {};
+    /// Closed rings (nonzero): what later areas of the drawing cover beside an edge that they share with this one. The
+    /// area reaches a texel under them, as printers trap: their edges then show no ground.
+    std::vector<std::vector<Vec2>> under = {};
     Placement placement;
     bool placed = false;  ///< the file gives a placement
     AreaEdges edges = AreaEdges::facing;
@@ -86,8 +89,8 @@ struct FlatArea {
 inline constexpr std::size_t kMaxAreaPoints = 2'000'000;
 inline constexpr std::size_t kMaxAreaStops = 1000;
 
-/// Throws `Error` for points out of range, more than the limits, no stop, and parameters that are no numbers. Points of
-/// lines count with those of rings.
+/// Throws `Error` for points out of range, more than the limits, no stop, and parameters that are no numbers. All
+/// points count.
 void check_area(const FlatArea& area);
 
 /// Returns t at a flat point, in [0, 1] after the spread. Of a picture the mean over a square of side `width` metres,
