@@ -11,6 +11,7 @@
 #include "core/files/files.h"
 #include "io/gltf/read_gltf.h"
 #include "io/image/image.h"
+#include "io/model/read_model.h"
 #include "mesh/read/polygon_soup.h"
 #include "sample_model.h"
 
@@ -188,6 +189,16 @@ TEST(Export, PagesOfAnObjFollowTheUdimConvention) {
             for (int i = 0; i < 64 * 3; ++i)
                 ASSERT_EQ(page.pixels[(63 - y) * 64 * 3 + i], maps.base_colour.texels[(y * 128 + 64 * column) * 3 + i]);
     }
+    // And back: each page is a tile of the material.
+    const mesh::PolygonSoup again = read_model(folder / "m.obj");
+    ASSERT_EQ(again.materials.size(), 2u);
+    for (std::size_t group = 0; group < 2; ++group) {
+        ASSERT_EQ(again.materials[group].tiles.size(), 1u);
+        const mesh::PictureTile& tile = again.materials[group].tiles[0];
+        EXPECT_EQ(tile.udim, 1001 + group);
+        EXPECT_EQ(tile.picture->rgb, read_image8(folder / tile.picture->name).pixels);
+    }
+    EXPECT_TRUE(again.warnings.empty());
 }
 
 TEST(Export, PagesOfAGltfArePrimitivesWithTheirOwnMaterials) {

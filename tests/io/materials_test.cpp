@@ -168,6 +168,82 @@ TEST(Materials, AProjectKeepsThemAndMakesTheSameBaseColourAgain) {
         ASSERT_EQ(again.base_colour.tiles[slot].rgb, model.base_colour.tiles[slot].rgb);
 }
 
+/// Faces on the tiles 1002, 1011 and 1020.
+const std::string kThreeTiles =
+    "mtllib m.mtl\nusemtl one\nv 0 0 0\nv 100 0 0\nv 100 100 0\nv 0 100 0\nv 0 0 50\nv 100 0 50\nv 0 0 90\nv 100 0 90\n"
+    "vt 1 0\nvt 2 0\nvt 2 1\nvt 1 1\nvt 0 1\nvt 1 2\nvt 9 1\nvt 10 1\nvt 10 2\n"
+    "f 1/1 2/2 3/3 4/4\nf 1/5 2/4 6/6\nf 4/7 3/8 8/9\n";
+
+TEST(Materials, ANumberInAPicturesNameStandsForItsTile) {
+    const Folder folder("udim");
+    put(folder / "m.obj", kThreeTiles);
+    put(folder / "m.mtl", "newmtl one\nmap_Kd -clamp on p.<udim>.png\n");
+    put(folder / "p.1002.png", png_text());
+    const Image8 green{.width = 1, .height = 1, .channels = 3, .pixels = {0, 255, 0}};
+    const std::vector<unsigned char> png = png_bytes(view_of(green));
+    put(folder / "p.1011.png", {png.begin(), png.end()});
+    const mesh::PolygonSoup soup = read_model(folder / "m.obj");
+    ASSERT_EQ(soup.materials.size(), 1u);
+    const std::vector<mesh::PictureTile>& tiles = soup.materials[0].tiles;
+    ASSERT_EQ(tiles.size(), 2u);
+    EXPECT_EQ(tiles[0].udim, 1002u);
+    EXPECT_EQ(tiles[0].picture->rgb, four_colours().pixels);
+    EXPECT_EQ(tiles[1].udim, 1011u);
+    ASSERT_EQ(soup.warnings.size(), 1u);
+    EXPECT_NE(soup.warnings[0].text().find("p.1020.png"), std::string::npos) << soup.warnings[0].text();
+
+    const stroke::Model model = model_of(soup, 64);
+    const auto colour = [&](const Vec3& p) {
+        double nearest = 1;
+        std::array<int, 3> rgb{};
+        for (std::uint32_t slot = 0; slot < model.texels.n_slots(); ++slot)
+            for (int t = 0; t < atlas::kTileTexels; ++t)
+                if (const double d = glm::distance(Vec3(model.texels.position(slot, t)), p);
+                    model.texels.tiles[slot].cluster[t] != atlas::kNoCluster && d < nearest) {
+                    nearest = d;
+                    for (std::size_t c = 0; c < 3; ++c) rgb[c] = model.base_colour.tiles[slot].rgb[c][t];
+                }
+        return rgb;
+    };
+    // Well inside the pixels: row 0 of the picture is at v = 1.
+    EXPECT_EQ(colour({0.015, 0.085, 0}), (std::array{255, 0, 0}));
+    EXPECT_EQ(colour({0.085, 0.015, 0}), (std::array{255, 255, 255}));
+    EXPECT_EQ(colour({0.015, 0.015, 0}), (std::array{0, 0, 255}));
+    EXPECT_EQ(colour({0.08, 0, 0.02}), (std::array{0, 255, 0}));
+    EXPECT_EQ(colour({0.08, 0.05, 0.045}), (std::array{255, 255, 255})) << "a tile without a picture";
+
+    Project::create(folder / "m.tuft", contents(model));
+    const Project project = Project::open(folder / "m.tuft");
+    EXPECT_EQ(project.format(), kTilesFormat) << "older programs would repeat one picture";
+    ProjectModel stored = project.model();
+    ASSERT_EQ(stored.mesh.materials[0].tiles.size(), 2u);
+    EXPECT_EQ(stored.mesh.materials[0].tiles[1].picture->bytes, tiles[1].picture->bytes);
+    const stroke::Model again = stroke::prepare_model(std::move(stored.mesh), std::move(stored.atlas));
+    for (std::size_t slot = 0; slot < again.base_colour.tiles.size(); ++slot)
+        ASSERT_EQ(again.base_colour.tiles[slot].rgb, model.base_colour.tiles[slot].rgb);
+}
+
+TEST(Materials, TilesAreReadFromTheFolderOnlyAndNoMoreThanSomeHundred) {
+    const Folder folder("udim_hostile");
+    fs::create_directories(folder / "in");
+    put(folder / "p.1002.png", png_text());
+    put(folder / "in/m.obj", kThreeTiles);
+    for (const std::string& name :
+         {std::string("../p.<UDIM>.png"), (fs::absolute(folder / "p.").string() + "<UDIM>.png")}) {
+        put(folder / "in/m.mtl", "newmtl one\nmap_Kd " + name + "\n");
+        EXPECT_TRUE(read_model(folder / "in/m.obj").materials.empty()) << name;
+    }
+    // UVs on all tiles, beside them, and none at all.
+    std::string obj = "mtllib m.mtl\nusemtl one\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (int i = -5; i < 1010; ++i)
+        obj += "vt " + std::to_string(i % 10 + 0.1) + " " + std::to_string(i / 10 + 0.1) + "\nf 1/-1 2/-1 3/-1\n";
+    put(folder / "in/m.obj", obj + "vt 1e30 nan\nf 1/-1 2/-1 3/-1\nf 1 2 3\n");
+    put(folder / "in/m.mtl", "newmtl one\nmap_Kd p.<UDIM>.png\n");
+    const mesh::PolygonSoup soup = read_model(folder / "in/m.obj");
+    EXPECT_GT(soup.warnings.size(), kMostPictureTiles);
+    EXPECT_LT(soup.warnings.size(), kMostPictureTiles + 10) << "one for each tile that is looked for";
+}
+
 TEST(Materials, AModelWithoutColoursKeepsAnOlderFormat) {
     const Folder folder("plain");
     put(folder / "m.obj", kTwoTriangles);

@@ -85,8 +85,11 @@ double twice_area(const Vec2f& a, const Vec2f& b, const Vec2f& c) {
 class Colours {
   public:
     Colours(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas) : mesh_(mesh), atlas_(atlas) {
-        for (const mesh::Material& m : mesh.materials)
-            if (m.picture && !mesh.corner_uvs.empty()) pictures_.try_emplace(m.picture.get(), *m.picture);
+        if (mesh.corner_uvs.empty()) return;
+        for (const mesh::Material& m : mesh.materials) {
+            if (m.picture) pictures_.try_emplace(m.picture.get(), *m.picture);
+            for (const mesh::PictureTile& tile : m.tiles) pictures_.try_emplace(tile.picture.get(), *tile.picture);
+        }
     }
 
     Vec3f at(std::uint32_t triangle, const Vec3& weights) const {
@@ -97,22 +100,32 @@ class Colours {
                 : mesh_.materials[mesh_.triangle_groups.empty() ? 0 : mesh_.triangle_groups[triangle]];
         Vec3f colour;
         for (int c = 0; c < 3; ++c) colour[c] = srgb_decode(material.colour[c]);
-        const auto picture = pictures_.find(material.picture.get());
+        const auto picture = pictures_.find(picture_on(material, triangle));
         const bool pictured = picture != pictures_.end();
-        if (pictured) colour *= picture_at(picture->second, triangle, weights);
+        if (pictured) colour *= picture_at(picture->second, triangle, weights, !material.tiles.empty());
         if (!mesh_.vertex_colours.empty() && (!pictured || material.tinted)) colour *= vertex_colour(triangle, weights);
         return colour;
     }
 
   private:
-    Vec3f picture_at(const MipMap& map, std::uint32_t triangle, const Vec3& weights) const {
+    /// The tile that the middle of the triangle lies on.
+    const mesh::Picture* picture_on(const mesh::Material& material, std::uint32_t triangle) const {
+        if (material.tiles.empty() || mesh_.corner_uvs.empty()) return material.picture.get();
+        const std::uint32_t udim = mesh::udim_at(std::span(mesh_.corner_uvs).subspan(3 * std::size_t{triangle}, 3));
+        const auto tile = std::ranges::lower_bound(material.tiles, udim, {}, &mesh::PictureTile::udim);
+        return tile != material.tiles.end() && tile->udim == udim ? tile->picture.get() : nullptr;
+    }
+
+    Vec3f picture_at(const MipMap& map, std::uint32_t triangle, const Vec3& weights, bool tiled) const {
         const Vec2f* uv = &mesh_.corner_uvs[3 * std::size_t{triangle}];
         const Vec2f* on_page = &atlas_.corner_uvs[3 * std::size_t{triangle}];
+        const Vec2 corner = tiled ? glm::floor((Vec2(uv[0]) + Vec2(uv[1]) + Vec2(uv[2])) / 3.0) : Vec2(0);
         Vec2 at(0);
         bool inside = true;
         for (int k = 0; k < 3; ++k) {
-            at += weights[k] * Vec2(uv[k]);
-            inside = inside && uv[k].x >= 0 && uv[k].x <= 1 && uv[k].y >= 0 && uv[k].y <= 1;
+            const Vec2 p = Vec2(uv[k]) - corner;
+            at += weights[k] * p;
+            inside = inside && p.x >= 0 && p.x <= 1 && p.y >= 0 && p.y <= 1;
         }
         // Beyond this no digit behind the point is left.
         if (!(std::abs(at.x) < 1e9 && std::abs(at.y) < 1e9)) return Vec3f(1);

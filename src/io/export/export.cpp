@@ -71,11 +71,16 @@ std::vector<Vec2f> split_pages(const atlas::Atlas& atlas, ExportScene& scene) {
     return uvs;
 }
 
-/// Parts that carry ink, and those to which the file gave no material.
-std::vector<std::uint8_t> decorated_parts(const mesh::SourceScene& source, const std::vector<std::uint8_t>& painted) {
+/// Parts that carry ink, those to which the file gave no material, and those whose pictures lie on UDIM tiles, for
+/// which the document of the scene has no place.
+std::vector<std::uint8_t> decorated_parts(const mesh::TriangleMesh& mesh, const mesh::SourceScene& source,
+                                          const std::vector<std::uint8_t>& painted) {
     std::vector<std::uint8_t> decorated(source.parts.size(), 1);
+    const auto is_tiled = [&](std::size_t i) {
+        return mesh.materials.size() == decorated.size() && !mesh.materials[i].tiles.empty();
+    };
     for (std::size_t i = 0; i < decorated.size() && i < painted.size(); ++i)
-        decorated[i] = painted[i] || source.parts[i].own_material < 0;
+        decorated[i] = painted[i] || source.parts[i].own_material < 0 || is_tiled(i);
     return decorated;
 }
 
@@ -256,7 +261,7 @@ std::vector<Message> export_model(const fs::path& path, const mesh::TriangleMesh
         .mesh = mesh,
         .source = source,
         // The base colour map holds the file's own colours, too.
-        .decorated = decorated_parts(source, extension == ".3mf" ? std::vector<std::uint8_t>{} : options.painted),
+        .decorated = decorated_parts(mesh, source, extension == ".3mf" ? std::vector<std::uint8_t>{} : options.painted),
         .transmits = options.transmits,
         .has_transmission = is_gltf(extension),
         .wedges = {},

@@ -27,6 +27,7 @@ namespace tuft::io {
 
 inline constexpr int kProjectFormat = 11;  ///< highest format version that this program reads
 inline constexpr int kUnderFormat = 11;    ///< needed for areas that reach under later ones
+inline constexpr int kTilesFormat = 11;    ///< needed for pictures on UDIM tiles
 inline constexpr int kPartsFormat = 10;    ///< needed for parts with a state, and for substrates of glass
 inline constexpr int kEdgesFormat = 9;     ///< needed for areas that end at edges, pictures, masks clear of edges
 inline constexpr int kRolledFormat = 8;    ///< needed for strokes with a roll of the holder

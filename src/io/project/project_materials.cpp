@@ -37,22 +37,26 @@ void store_materials(SQLite::Database& db, const mesh::TriangleMesh& mesh) {
     if (mesh.materials.empty()) return;
     std::map<const mesh::Picture*, std::size_t> index;
     nlohmann::json names = nlohmann::json::array(), table = nlohmann::json::array();
-    for (const mesh::Material& m : mesh.materials) {
-        nlohmann::json row{{"colour", {m.colour.r, m.colour.g, m.colour.b}}, {"tinted", m.tinted}};
-        if (m.picture) {
-            const auto [it, is_new] = index.try_emplace(m.picture.get(), index.size());
-            row["picture"] = it->second;
-            if (is_new) {
-                names.push_back(m.picture->name);
-                put_array(db, "mesh", picture_array(it->second).c_str(), m.picture->bytes, kBytes);
-            }
+    const auto put = [&](const mesh::Picture& picture) {
+        const auto [it, is_new] = index.try_emplace(&picture, index.size());
+        if (is_new) {
+            names.push_back(picture.name);
+            put_array(db, "mesh", picture_array(it->second).c_str(), picture.bytes, kBytes);
         }
+        return it->second;
+    };
+    bool tiled = false;
+    for (const mesh::Material& m : mesh.materials) {
+        tiled = tiled || !m.tiles.empty();
+        nlohmann::json row{{"colour", {m.colour.r, m.colour.g, m.colour.b}}, {"tinted", m.tinted}};
+        if (m.picture) row["picture"] = put(*m.picture);
+        for (const mesh::PictureTile& tile : m.tiles) row["tiles"].push_back({tile.udim, put(*tile.picture)});
         table.push_back(std::move(row));
     }
     const std::string text = nlohmann::json{{"materials", table}, {"pictures", names}}.dump(
         -1, ' ', false, nlohmann::json::error_handler_t::replace);
     put_array(db, "mesh", "materials", std::vector<char>(text.begin(), text.end()), kBytes);
-    raise_format(db, kColoursFormat);
+    raise_format(db, tiled ? kTilesFormat : kColoursFormat);
 }
 
 void load_materials(SQLite::Database& db, const std::filesystem::path& path, mesh::TriangleMesh& mesh) {
@@ -74,6 +78,12 @@ void load_materials(SQLite::Database& db, const std::filesystem::path& path, mes
                 m.colour[c] = value;
             }
             if (row.contains("picture")) m.picture = pictures.at(whole_number<std::size_t>(row["picture"]));
+            if (row.contains("tiles"))
+                for (const nlohmann::json& tile : row["tiles"])
+                    m.tiles.push_back(
+                        {whole_number<std::uint32_t>(tile.at(0)), pictures.at(whole_number<std::size_t>(tile.at(1)))});
+            if (!std::ranges::is_sorted(m.tiles, std::less_equal<>{}, &mesh::PictureTile::udim))
+                damaged(path, "the pictures of a material's tiles are not in order");
             mesh.materials.push_back(std::move(m));
         }
     } catch (const nlohmann::json::exception&) {

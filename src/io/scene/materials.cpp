@@ -1,11 +1,14 @@
 #include "io/scene/materials.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <map>
 #include <optional>
+#include <set>
+#include <span>
 
 #include "core/error.h"
 #include "core/files/files.h"
@@ -22,6 +25,7 @@ namespace {
 
 constexpr std::size_t kMaxLibraries = 64;
 constexpr std::size_t kMaxStatements = 1000;  // of an entry
+constexpr std::string_view kUdim = "<UDIM>";
 
 /// Where a file of that name lies in the folder; nothing when it is not there.
 std::optional<fs::path> find_beside(const fs::path& folder, std::string name) {
@@ -73,10 +77,10 @@ class Pictures {
   public:
     Pictures(fs::path folder, std::vector<Message>& warnings) : folder_(std::move(folder)), warnings_(warnings) {}
 
-    std::shared_ptr<const mesh::Picture> get(const std::string& name) {
+    std::shared_ptr<const mesh::Picture> get(const std::string& name, std::size_t most_pixels = kMaxPicturePixels) {
         const std::optional<fs::path> file = find_beside(folder_, name);
         const auto [it, is_new] = read_.try_emplace(file ? file->string() : name);
-        if (is_new && file) it->second = read(*file);
+        if (is_new && file) it->second = read(*file, most_pixels);
         if (is_new && !file)
             warnings_.push_back(
                 Message("the picture {} is not in the model's folder; its faces go without", mesh::in_quotes(name)));
@@ -84,9 +88,9 @@ class Pictures {
     }
 
   private:
-    std::shared_ptr<const mesh::Picture> read(const fs::path& file) {
+    std::shared_ptr<const mesh::Picture> read(const fs::path& file, std::size_t most_pixels) {
         try {
-            return decode_picture(file.filename().string(), read_file(file, kMaxPictureBytes));
+            return decode_picture(file.filename().string(), read_file(file, kMaxPictureBytes), most_pixels);
         } catch (const std::exception& e) {
             warnings_.push_back(Message("{}; its faces go without", message_of(e)));
             return nullptr;
@@ -96,6 +100,65 @@ class Pictures {
     fs::path folder_;
     std::vector<Message>& warnings_;
     std::map<std::string, std::shared_ptr<const mesh::Picture>> read_;
+};
+
+/// Where a name has its `<UDIM>`; npos: nowhere.
+std::size_t place_of_number(const std::string& name) {
+    const auto at = std::ranges::search(name, kUdim, [](char a, char b) { return std::toupper(a) == b; }).begin();
+    return at == name.end() ? name.npos : static_cast<std::size_t>(at - name.begin());
+}
+
+/// Pictures on UDIM tiles.
+class TilePictures {
+  public:
+    TilePictures(const mesh::PolygonSoup& soup, Pictures& pictures, std::vector<Message>& warnings)
+        : soup_(soup), pictures_(pictures), warnings_(warnings) {}
+
+    /// `group`: whose faces the pictures are for.
+    std::vector<mesh::PictureTile> get(const std::string& name, std::size_t group) {
+        const std::size_t at = place_of_number(name);
+        std::vector<mesh::PictureTile> tiles;
+        for (const std::uint32_t udim : tiles_of(group)) {
+            std::string file = name;
+            file.replace(at, kUdim.size(), std::to_string(udim));
+            const bool is_new = !read_.contains(file);
+            if (is_new && (read_.size() >= kMostPictureTiles || n_pixels_ >= kMaxTilePixels)) {
+                warnings_.push_back(Message("{} has more or larger tiles than are read; their faces go without",
+                                            mesh::in_quotes(name)));
+                break;
+            }
+            read_.insert(file);
+            const auto picture = pictures_.get(file, std::min(kMaxPicturePixels, kMaxTilePixels - n_pixels_));
+            if (!picture) continue;
+            tiles.push_back({udim, picture});
+            if (!is_new) continue;
+            n_pixels_ += static_cast<std::size_t>(picture->width) * static_cast<std::size_t>(picture->height);
+        }
+        return tiles;
+    }
+
+  private:
+    const std::set<std::uint32_t>& tiles_of(std::size_t group) {
+        if (of_group_.empty()) find_tiles();
+        return of_group_[group];
+    }
+
+    void find_tiles() {
+        of_group_.resize(std::max<std::size_t>(1, soup_.group_names.size()));
+        for (std::size_t p = 0; p < soup_.n_polygons() && !soup_.corner_uvs.empty(); ++p) {
+            const std::size_t begin = soup_.polygon_start[p], n = soup_.polygon_start[p + 1] - begin;
+            const std::uint32_t udim = mesh::udim_at(std::span(soup_.corner_uvs).subspan(begin, n));
+            const std::size_t group = soup_.polygon_groups.empty() ? 0 : soup_.polygon_groups[p];
+            if (udim != 0 && group < of_group_.size()) of_group_[group].insert(udim);
+        }
+    }
+
+    const mesh::PolygonSoup& soup_;
+    Pictures& pictures_;
+    std::vector<Message>& warnings_;
+    std::vector<std::set<std::uint32_t>> of_group_;
+    std::set<std::string> read_;
+    std::size_t n_pixels_ = 0;
 };
 
 std::map<std::string, MtlEntry> read_libraries(mesh::PolygonSoup& soup, const fs::path& folder) {
@@ -130,6 +193,7 @@ void add_materials(mesh::PolygonSoup& soup, const std::map<std::string, MtlEntry
     std::map<const mesh::Picture*, int> textures;
     std::vector<const mesh::Picture*> picture_of;
     const auto texture_of = [&](const std::string& name) {
+        if (place_of_number(name) != name.npos) return -1;
         const auto picture = pictures.get(name);
         if (!picture) return -1;
         const auto [it, is_new] = textures.try_emplace(picture.get(), -1);
@@ -160,11 +224,12 @@ void add_materials(mesh::PolygonSoup& soup, const std::map<std::string, MtlEntry
 
 }  // namespace
 
-std::shared_ptr<const mesh::Picture> decode_picture(std::string name, std::vector<char> bytes) {
+std::shared_ptr<const mesh::Picture> decode_picture(std::string name, std::vector<char> bytes,
+                                                    std::size_t most_pixels) {
     if (bytes.size() > kMaxPictureBytes) throw Error(name, "is larger than a picture may be");
     if (bytes.size() >= 4 && std::memcmp(bytes.data(), "\x76\x2f\x31\x01", 4) == 0)
         throw Error(name, "is an EXR picture, not a PNG, JPEG or TIFF");
-    const Image8 image = decode_image8(bytes, name, kMaxPicturePixels);
+    const Image8 image = decode_image8(bytes, name, most_pixels);
     auto picture = std::make_shared<mesh::Picture>();
     picture->name = std::move(name);
     picture->bytes = std::move(bytes);
@@ -200,13 +265,19 @@ void read_materials(mesh::PolygonSoup& soup, const fs::path& model) {
     const bool by_library = !soup.material_libraries.empty();
     const std::map<std::string, MtlEntry> entries = read_libraries(soup, folder);
     Pictures pictures(folder, soup.warnings);
+    TilePictures tiles(soup, pictures, soup.warnings);
     bool any = false;
     std::vector<mesh::Material> materials(names.size());
     for (std::size_t i = 0; i < names.size(); ++i) {
         const auto found = entries.find(to_utf8(names[i]));
         if (found != entries.end()) {
             const MtlEntry& entry = found->second;
-            if (!entry.picture.empty()) materials[i].picture = pictures.get(entry.picture);
+            if (place_of_number(entry.picture) != std::string::npos) {
+                materials[i].tiles = tiles.get(entry.picture, i);
+                if (!materials[i].tiles.empty()) materials[i].picture = materials[i].tiles.front().picture;
+            } else if (!entry.picture.empty()) {
+                materials[i].picture = pictures.get(entry.picture);
+            }
             if (!materials[i].picture) materials[i].colour = entry.colour;
             any = true;
         } else if (!by_library && !names[i].empty()) {

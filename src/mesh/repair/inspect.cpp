@@ -98,10 +98,15 @@ MeshSummary summarise(const Surface& surface, double metres_per_unit) {
     s.has_uvs = !mesh.corner_uvs.empty();
     s.has_colours = has_colours(mesh);
     std::set<const Picture*> pictures;
-    for (const Material& m : mesh.materials)
-        if (m.picture && pictures.insert(m.picture.get()).second)
-            s.pictures.push_back(m.picture->name + " (" + std::to_string(m.picture->width) + " x " +
-                                 std::to_string(m.picture->height) + ")");
+    const auto add = [&](const Picture* picture) {
+        if (picture && pictures.insert(picture).second)
+            s.pictures.push_back(picture->name + " (" + std::to_string(picture->width) + " x " +
+                                 std::to_string(picture->height) + ")");
+    };
+    for (const Material& m : mesh.materials) {
+        add(m.picture.get());
+        for (const PictureTile& tile : m.tiles) add(tile.picture.get());
+    }
     s.vertex_colours = !mesh.vertex_colours.empty();
     s.group_names = mesh.group_names;
     s.metres_per_unit = metres_per_unit;
