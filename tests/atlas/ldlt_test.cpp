@@ -10,6 +10,7 @@
 
 #include "atlas/flatten/dissection.h"
 #include "core/random.h"
+#include "core/system/parallel.h"
 
 namespace tuft::atlas {
 namespace {
@@ -88,6 +89,25 @@ TEST(LdltFactor, SolvesToRounding) {
                 factor.solve(x);
                 EXPECT_LT(residual(grid.matrix, x, b), 1e-14) << n << ", " << share << ", " << scattered;
             }
+}
+
+// Large enough that threads share its subtrees, in one component and in several.
+TEST(LdltFactor, HasTheSameBitsForAnyNumberOfThreads) {
+    for (const double share : {0.45, 1.0}) {
+        std::vector<std::vector<Vec2>> solutions;
+        for (const int threads : {1, 2, 5}) {
+            set_thread_count(threads);
+            Random random(3);
+            const Grid grid = laplacian(110, 0.01, random, [&] { return share == 1 || random.uniform() < share; });
+            LdltFactor factor;
+            ASSERT_TRUE(factor.compute(grid.matrix, grid.at));
+            solutions.push_back(random_numbers(grid.at.size(), random));
+            factor.solve(solutions.back());
+        }
+        set_thread_count(0);
+        EXPECT_EQ(solutions[0], solutions[1]);
+        EXPECT_EQ(solutions[0], solutions[2]);
+    }
 }
 
 TEST(LdltFactor, RefusesWhatIsSingular) {

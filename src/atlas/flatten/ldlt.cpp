@@ -14,9 +14,10 @@
 namespace tuft::atlas {
 namespace {
 
-constexpr std::uint32_t kLanes = 4;     // rows that are computed together
-constexpr std::uint32_t kPanel = 32;    // pivots that are applied together to the columns after them
-constexpr std::uint32_t kTogether = 8;  // of these columns at a time
+constexpr std::uint32_t kLanes = 4;           // rows that are computed together
+constexpr std::uint32_t kPanel = 32;          // pivots that are applied together to the columns after them
+constexpr std::uint32_t kTogether = 8;        // of these columns at a time
+constexpr std::size_t kManyValues = 1 << 18;  // numbers of L of which subtrees go to other threads
 
 /// The numbers of kLanes rows, anywhere in memory.
 using Lanes [[gnu::vector_size(kLanes * sizeof(double)), gnu::aligned(sizeof(double)), gnu::may_alias]] = double;
@@ -195,7 +196,7 @@ struct LdltFactor::Rows {
 
 /// What fronts leave of the columns beyond their pivots, until their parents take it. One for each thread.
 struct LdltFactor::Stack {
-    std::vector<double> values;           ///< column by column, the lower half of a square each
+    std::vector<double> values;           ///< of each the lower half of a square, column by column
     std::vector<std::uint32_t> fronts;    ///< whose they are
     std::vector<std::uint32_t> in_front;  ///< of each row of L: its row in the front being assembled
     std::vector<double> dense;            ///< the front being factored, column by column
@@ -231,10 +232,32 @@ void LdltFactor::find_fronts(const Rows& rows) {
         size += std::size_t{front.n_pivots} * front.stride;
     }
     n_values_used_ = size;
+    find_subtrees();
     if (size > n_values_) {
         values_ = std::make_unique_for_overwrite<double[]>(n_values_ = size);
         prefer_large_pages(values_.get(), sizeof(double) * size);
     }
+}
+
+/// Numbers of L that fronts `first` to `last` − 1 have.
+std::size_t LdltFactor::n_values(std::uint32_t first, std::uint32_t last) const {
+    const auto begins_at = [&](std::uint32_t s) { return s < fronts_.size() ? fronts_[s].values : n_values_used_; };
+    return begins_at(last) - begins_at(first);
+}
+
+/// The largest subtrees of up to an eighth of L, none where L is small.
+void LdltFactor::find_subtrees() {
+    largest_stride_ = 0;
+    for (const Front& front : fronts_) largest_stride_ = std::max(largest_stride_, front.stride);
+    subtrees_.clear();
+    if (n_values_used_ < kManyValues) return;
+    for (auto end = static_cast<std::uint32_t>(fronts_.size()); end > 0;) {
+        const std::uint32_t first = fronts_[end - 1].subtree;
+        const bool small = 8 * n_values(first, end) <= n_values_used_;
+        if (small && 64 * n_values(first, end) >= n_values_used_) subtrees_.push_back(end - 1);
+        end = small ? first : end - 1;
+    }
+    std::reverse(subtrees_.begin(), subtrees_.end());
 }
 
 /// Makes the lower half of the front from the matrix and what its children left.
@@ -252,14 +275,14 @@ void LdltFactor::assemble(const Rows& rows, const Front& front, Stack& stack) {
     for (std::uint32_t c = 0; c < front.n_children; ++c) {
         const Front& child = fronts_[stack.fronts.back()];
         stack.fronts.pop_back();
-        const std::size_t n = child.n_beyond;
+        const std::size_t n = child.n_beyond, n_left = n * (n + 1) / 2;
         const std::uint32_t* const row = beyond_.data() + child.beyond;
-        const double* const left = stack.values.data() + stack.values.size() - n * n;
+        const double* left = stack.values.data() + stack.values.size() - n_left;
         for (std::size_t j = 0; j < n; ++j) {
             double* const column = stack.dense.data() + stack.in_front[row[j]] * stride;
-            for (std::size_t i = j; i < n; ++i) column[stack.in_front[row[i]]] += left[j * n + i];
+            for (std::size_t i = j; i < n; ++i) column[stack.in_front[row[i]]] += *left++;
         }
-        stack.values.resize(stack.values.size() - n * n);
+        stack.values.resize(stack.values.size() - n_left);
     }
 }
 
@@ -274,7 +297,7 @@ bool LdltFactor::factor_in_turn(const Rows& rows, std::uint32_t first, std::uint
         std::memcpy(values_.get() + front.values, dense, sizeof(double) * front.n_pivots * std::size_t{front.stride});
         for (std::uint32_t c = front.n_pivots; c < size; ++c) {
             const double* const column = dense + c * std::size_t{front.stride};
-            stack.values.insert(stack.values.end(), column + front.n_pivots, column + size);
+            stack.values.insert(stack.values.end(), column + c, column + size);
         }
         stack.fronts.push_back(s);
     }
@@ -284,9 +307,7 @@ bool LdltFactor::factor_in_turn(const Rows& rows, std::uint32_t first, std::uint
 /// Factors the fronts `first` to `last` − 1, whole subtrees, the large ones at the same time, and leaves on the stack
 /// what their roots leave.
 bool LdltFactor::factor(const Rows& rows, std::uint32_t first, std::uint32_t last, Stack& stack) {
-    constexpr std::size_t kLarge = 1 << 18;  // numbers of L
-    const auto begins_at = [&](std::uint32_t s) { return s < fronts_.size() ? fronts_[s].values : n_values_used_; };
-    if (begins_at(last) - begins_at(first) < kLarge) return factor_in_turn(rows, first, last, stack);
+    if (n_values(first, last) < kManyValues) return factor_in_turn(rows, first, last, stack);
     std::vector<std::uint32_t> roots;
     for (std::uint32_t end = last; end > first; end = fronts_[end - 1].subtree) roots.push_back(end - 1);
     std::reverse(roots.begin(), roots.end());
@@ -301,8 +322,12 @@ bool LdltFactor::factor(const Rows& rows, std::uint32_t first, std::uint32_t las
             parts[k].dense = {};
         }
     });
-    for (const Stack& part : parts) {
-        stack.values.insert(stack.values.end(), part.values.begin(), part.values.end());
+    for (Stack& part : parts) {
+        if (stack.values.empty())
+            stack.values = std::move(part.values);
+        else
+            stack.values.insert(stack.values.end(), part.values.begin(), part.values.end());
+        part.values = {};
         stack.fronts.insert(stack.fronts.end(), part.fronts.begin(), part.fronts.end());
     }
     return std::find(done.begin(), done.end(), 0) == done.end();
@@ -329,6 +354,54 @@ bool LdltFactor::compute(SymmetricMatrix matrix, std::span<const Vec2> at) {
     return factor(rows, 0, static_cast<std::uint32_t>(fronts_.size()), stack);
 }
 
+/// Eliminates the rows of fronts `first` to `last` − 1 from the right hand sides of later ones. What goes to rows from
+/// `end_row` on, which others change at the same time, is `passed` on.
+void LdltFactor::solve_down(std::uint32_t first, std::uint32_t last, std::uint32_t end_row,
+                            std::vector<Passed>& passed) {
+    std::vector<double> x(largest_stride_), y(largest_stride_);
+    for (std::uint32_t s = first; s < last; ++s) {
+        const Front& front = fronts_[s];
+        std::fill_n(x.begin(), front.stride, 0);
+        std::fill_n(y.begin(), front.stride, 0);
+        std::copy_n(x_.begin() + front.first, front.n_pivots, x.begin());
+        std::copy_n(y_.begin() + front.first, front.n_pivots, y.begin());
+        substitute_down(values_.get() + front.values, front.stride, front.n_pivots, x.data(), y.data());
+        for (std::uint32_t i = 0; i < front.n_pivots; ++i) {
+            x_[front.first + i] = x[i] * inverse_[front.first + i];
+            y_[front.first + i] = y[i] * inverse_[front.first + i];
+        }
+        for (std::uint32_t i = 0; i < front.n_beyond; ++i) {
+            const std::uint32_t row = beyond_[front.beyond + i];
+            if (row >= end_row) {
+                passed.push_back({x[front.n_pivots + i], y[front.n_pivots + i], row});
+                continue;
+            }
+            x_[row] += x[front.n_pivots + i];
+            y_[row] += y[front.n_pivots + i];
+        }
+    }
+}
+
+/// Solves the rows of fronts `first` to `last` − 1, those of all later ones being solved.
+void LdltFactor::solve_up(std::uint32_t first, std::uint32_t last) {
+    std::vector<double> x(largest_stride_), y(largest_stride_);
+    for (std::uint32_t s = last; s-- > first;) {
+        const Front& front = fronts_[s];
+        std::fill_n(x.begin(), front.stride, 0);
+        std::fill_n(y.begin(), front.stride, 0);
+        std::copy_n(x_.begin() + front.first, front.n_pivots, x.begin());
+        std::copy_n(y_.begin() + front.first, front.n_pivots, y.begin());
+        for (std::uint32_t i = 0; i < front.n_beyond; ++i) {
+            const std::uint32_t row = beyond_[front.beyond + i];
+            x[front.n_pivots + i] = x_[row];
+            y[front.n_pivots + i] = y_[row];
+        }
+        substitute_up(values_.get() + front.values, front.stride, front.n_pivots, x.data(), y.data());
+        std::copy_n(x.begin(), front.n_pivots, x_.begin() + front.first);
+        std::copy_n(y.begin(), front.n_pivots, y_.begin() + front.first);
+    }
+}
+
 void LdltFactor::solve(std::span<Vec2> x) {
     x_.resize(x.size());
     y_.resize(x.size());
@@ -336,41 +409,35 @@ void LdltFactor::solve(std::span<Vec2> x) {
         x_[place_[i]] = x[i].x;
         y_[place_[i]] = x[i].y;
     }
-    std::uint32_t largest = 0;
-    for (const Front& front : fronts_) largest = std::max(largest, front.stride);
-    x_front_.resize(largest);
-    y_front_.resize(largest);
-    for (const Front& front : fronts_) {
-        std::fill_n(x_front_.begin(), front.stride, 0);
-        std::fill_n(y_front_.begin(), front.stride, 0);
-        std::copy_n(x_.begin() + front.first, front.n_pivots, x_front_.begin());
-        std::copy_n(y_.begin() + front.first, front.n_pivots, y_front_.begin());
-        substitute_down(values_.get() + front.values, front.stride, front.n_pivots, x_front_.data(), y_front_.data());
-        for (std::uint32_t i = 0; i < front.n_pivots; ++i) {
-            x_[front.first + i] = x_front_[i] * inverse_[front.first + i];
-            y_[front.first + i] = y_front_[i] * inverse_[front.first + i];
+    const auto n_fronts = static_cast<std::uint32_t>(fronts_.size());
+    const auto n_rows = static_cast<std::uint32_t>(x.size());
+    const auto subtree_of = [&](std::size_t k) { return fronts_[subtrees_[k]].subtree; };
+    passed_.resize(subtrees_.size() + 1);
+    parallel_for(subtrees_.size(), 1, [&](std::size_t k, std::size_t end) {
+        for (; k < end; ++k) {
+            const Front& root = fronts_[subtrees_[k]];
+            passed_[k].clear();
+            solve_down(root.subtree, subtrees_[k] + 1, root.first + root.n_pivots, passed_[k]);
         }
-        for (std::uint32_t i = 0; i < front.n_beyond; ++i) {
-            const std::uint32_t row = beyond_[front.beyond + i];
-            x_[row] += x_front_[front.n_pivots + i];
-            y_[row] += y_front_[front.n_pivots + i];
+    });
+    // The same sums in the same order as one thread would make them.
+    std::uint32_t next = 0;
+    for (std::size_t k = 0; k < subtrees_.size(); ++k) {
+        solve_down(next, subtree_of(k), n_rows, passed_.back());
+        for (const Passed& p : passed_[k]) {
+            x_[p.row] += p.x;
+            y_[p.row] += p.y;
         }
+        next = subtrees_[k] + 1;
     }
-    for (std::size_t s = fronts_.size(); s-- > 0;) {
-        const Front& front = fronts_[s];
-        std::fill_n(x_front_.begin(), front.stride, 0);
-        std::fill_n(y_front_.begin(), front.stride, 0);
-        std::copy_n(x_.begin() + front.first, front.n_pivots, x_front_.begin());
-        std::copy_n(y_.begin() + front.first, front.n_pivots, y_front_.begin());
-        for (std::uint32_t i = 0; i < front.n_beyond; ++i) {
-            const std::uint32_t row = beyond_[front.beyond + i];
-            x_front_[front.n_pivots + i] = x_[row];
-            y_front_[front.n_pivots + i] = y_[row];
-        }
-        substitute_up(values_.get() + front.values, front.stride, front.n_pivots, x_front_.data(), y_front_.data());
-        std::copy_n(x_front_.begin(), front.n_pivots, x_.begin() + front.first);
-        std::copy_n(y_front_.begin(), front.n_pivots, y_.begin() + front.first);
+    solve_down(next, n_fronts, n_rows, passed_.back());
+    for (std::size_t k = subtrees_.size() + 1, last = n_fronts; k-- > 0;) {
+        solve_up(k > 0 ? subtrees_[k - 1] + 1 : 0, static_cast<std::uint32_t>(last));
+        if (k > 0) last = subtree_of(k - 1);
     }
+    parallel_for(subtrees_.size(), 1, [&](std::size_t k, std::size_t end) {
+        for (; k < end; ++k) solve_up(subtree_of(k), subtrees_[k] + 1);
+    });
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = {x_[place_[i]], y_[place_[i]]};
 }
 

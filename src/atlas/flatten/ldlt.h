@@ -44,11 +44,20 @@ class LdltFactor {
     };
     struct Rows;
     struct Stack;
+    /// What a row gets from an earlier one of a subtree.
+    struct Passed {
+        double x = 0, y = 0;
+        std::uint32_t row = 0;
+    };
 
     void find_fronts(const Rows& rows);
     void assemble(const Rows& rows, const Front& front, Stack& stack);
+    std::size_t n_values(std::uint32_t first, std::uint32_t last) const;
+    void find_subtrees();
     bool factor_in_turn(const Rows& rows, std::uint32_t first, std::uint32_t last, Stack& stack);
     bool factor(const Rows& rows, std::uint32_t first, std::uint32_t last, Stack& stack);
+    void solve_down(std::uint32_t first, std::uint32_t last, std::uint32_t end_row, std::vector<Passed>& passed);
+    void solve_up(std::uint32_t first, std::uint32_t last);
 
     std::vector<std::uint32_t> place_;   ///< row of L of each row of the matrix
     std::vector<Front> fronts_;          ///< children before parents
@@ -56,8 +65,11 @@ class LdltFactor {
     std::unique_ptr<double[]> values_;   ///< of L, column by column
     std::size_t n_values_ = 0;           ///< that there is room for
     std::size_t n_values_used_ = 0;
-    std::vector<double> inverse_;  ///< 1 / D
-    std::vector<double> x_, y_, x_front_, y_front_;
+    std::vector<double> inverse_;          ///< 1 / D
+    std::vector<std::uint32_t> subtrees_;  ///< last fronts of those that threads share, ascending
+    std::uint32_t largest_stride_ = 0;
+    std::vector<double> x_, y_;
+    std::vector<std::vector<Passed>> passed_;
 };
 
 }  // namespace tuft::atlas
