@@ -74,7 +74,7 @@ TEST_F(Panels, NothingNeededForPaintingScrollsAt1280Times720) {
     const auto turns = places_in_turn(ran.out);
     ASSERT_EQ(turns.size(), 4u);
     for (const std::size_t language : {0, 2}) {
-        EXPECT_LT(turns[language].at("mm").first, turns[language].at("Fold the tools").first - 40)
+        EXPECT_LT(turns[language].at("In mm").first, turns[language].at("Fold the tools").first - 40)
             << "the handle is outside the panel: the switch, 60 pixels wide, lies inside";
         EXPECT_LT(turns[language + 1].at("fold Look inside").second, 680)
             << "the status bar begins at 690: all of it is on the screen";

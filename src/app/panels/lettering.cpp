@@ -173,7 +173,7 @@ void lettering_panel(Session& s) {
     ui.toggle("Snap", s.tools.place.snaps,
               "To the plane of symmetry and level with other drawings; Ctrl places it freely");
     ImGui::SameLine();
-    ui.toggle("mm", s.tools.place.has_fields, "Place in millimetres");
+    ui.toggle("In mm", s.tools.place.has_fields, "Place in millimetres");
     if (s.tools.place.has_fields) place_fields(ui, s.tools);
     // Last: it comes and goes with the cursor over the model, and no button may move under a click.
     fault_line(ui, l.fault.empty() ? s.tools.place.fault : l.fault);

@@ -107,6 +107,8 @@ void language_button(const MenuParts& s, MenuChoice& chosen) {
 void shading_combo(const MenuParts& s) {
     static const std::vector<std::string> names{"Glaze",   "Clay",       "Flat colour", "Ink height",
                                                 "Wetness", "Texel grid", "Charts",      "Stretch"};
+    // On the bar, which a light theme makes as grey as a field.
+    ImGui::PushStyleColor(ImGuiCol_FrameBg, ImGui::GetStyleColorVec4(ImGuiCol_Button));
     std::string name = names[static_cast<std::size_t>(s.view.shading)];
     if (s.ui.combo("Shading", name, names, 130))
         s.view.shading = static_cast<ModelView>(std::find(names.begin(), names.end(), name) - names.begin());
@@ -116,6 +118,7 @@ void shading_combo(const MenuParts& s) {
     if (s.ui.combo("Light", rig, rigs, 140))
         s.view.rig = static_cast<render::LightRig>(std::find(rigs.begin(), rigs.end(), rig) - rigs.begin());
     s.ui.hint("Raking light shows the relief of the ink");
+    ImGui::PopStyleColor();
 }
 
 }  // namespace

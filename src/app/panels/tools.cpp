@@ -129,7 +129,7 @@ void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
     // In millimetres beside the file: a row of three switches is wider than the panel.
     const float beside = w.empty() ? 0
                                    : style.ItemSpacing.x + ImGui::GetFrameHeight() + style.ItemInnerSpacing.x +
-                                         ImGui::CalcTextSize(ui.tr("mm")).x;
+                                         ImGui::CalcTextSize(ui.tr("In mm")).x;
     const float all = ImGui::GetContentRegionAvail().x - beside, inside = all - 2 * style.FramePadding.x;
     // The button is named by what is in hand.
     const std::string name = w.file.filename().string();
@@ -140,7 +140,7 @@ void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
     ui.hint(w.empty() ? "InkML or SVG" : "Another one, InkML or SVG");
     if (w.empty()) return;
     ImGui::SameLine();
-    ui.toggle("mm", tools.place.has_fields, "Place in millimetres");
+    ui.toggle("In mm", tools.place.has_fields, "Place in millimetres");
     for (const Message& note : w.form().notes) ui.note(ui.sentence(note));
     ui.toggle("Mirrored", w.mirrored);
     ImGui::SameLine();
