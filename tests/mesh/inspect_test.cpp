@@ -11,6 +11,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 UnitGuess guess(double x, double y, double z) {
     Box box;
@@ -87,6 +88,11 @@ TEST(Inspect, ReportsEveryDefectOnce) {
 TEST(Inspect, WarnsWhenTheUnitLooksWrong) {
     const Surface s = build_surface(make_box(Vec3(0), Vec3(0.2)), {.metres_per_unit = 1e-3});
     EXPECT_THAT(describe(summarise(s, 1e-3)), Contains(HasSubstr("check --unit")));
+    // A mug in inches, whose numbers look like metres: a person who says so knows it.
+    const double inch = 25.4e-3;
+    const Surface mug = build_surface(make_box(Vec3(0), Vec3(3.2, 3.2, 3.8)), {.metres_per_unit = inch});
+    EXPECT_NE(summarise(mug, inch).unit.unit, "in");
+    EXPECT_THAT(describe(summarise(mug, inch)), Not(Contains(HasSubstr("check --unit"))));
 }
 
 }  // namespace

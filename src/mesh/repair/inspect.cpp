@@ -42,16 +42,42 @@ double plausibility(double diagonal) {
     return std::exp(-0.5 * (beyond / kSpread) * (beyond / kSpread));
 }
 
+struct Unit {
+    const char* name;
+    const char* plural;
+    double weight;
+};
+constexpr std::array<Unit, 4> kUnits{
+    {{"mm", "millimetres", 0.5}, {"m", "metres", 0.25}, {"cm", "centimetres", 0.15}, {"in", "inches", 0.1}}};
+
+/// Units that a model of `diagonal` units across may be in: their places in kUnits, the likeliest first. Beside
+/// millimetres that make a usual product nothing else is possible; beside metres centimetres and inches are.
+std::vector<std::size_t> possible_units(double diagonal) {
+    constexpr double kPossible = 0.35;  // of the best score
+    std::array<double, 4> score{};
+    for (std::size_t i = 0; i < kUnits.size(); ++i)
+        score[i] = kUnits[i].weight * plausibility(diagonal * *metres_per(kUnits[i].name));
+    const double best = *std::max_element(score.begin(), score.end());
+    if (!(best > 1e-12)) return {};
+    std::vector<std::size_t> possible;
+    for (std::size_t i = 0; i < kUnits.size(); ++i)
+        if (score[i] >= kPossible * best) possible.push_back(i);
+    std::stable_sort(possible.begin(), possible.end(),
+                     [&](std::size_t a, std::size_t b) { return score[a] > score[b]; });
+    return possible;
+}
+
+/// Whether a surface may be in the unit that it was loaded in.
+bool is_loaded_in_possible_unit(const MeshSummary& s) {
+    const auto is_loaded = [&](double metres) { return std::abs(metres / s.metres_per_unit - 1) < 1e-9; };
+    if (is_loaded(s.unit.metres_per_unit)) return true;
+    const std::vector<std::size_t> possible = possible_units(s.bounds.diagonal() / s.metres_per_unit);
+    return std::ranges::any_of(possible, [&](std::size_t i) { return is_loaded(*metres_per(kUnits[i].name)); });
+}
+
 }  // namespace
 
 UnitGuess guess_unit(const Box& bounds) {
-    struct Unit {
-        const char* name;
-        const char* plural;
-        double weight;
-    };
-    constexpr std::array<Unit, 4> kUnits{
-        {{"mm", "millimetres", 0.5}, {"m", "metres", 0.25}, {"cm", "centimetres", 0.15}, {"in", "inches", 0.1}}};
     const double diagonal = bounds.diagonal();
     UnitGuess guess;
     if (!(diagonal > 0) || !std::isfinite(diagonal)) {
@@ -59,27 +85,21 @@ UnitGuess guess_unit(const Box& bounds) {
         guess.sentence = "the model has no size to guess its unit from; mm is taken";
         return guess;
     }
-    std::array<double, 4> score{};
-    for (std::size_t i = 0; i < kUnits.size(); ++i)
-        score[i] = kUnits[i].weight * plausibility(diagonal * *metres_per(kUnits[i].name));
-    const auto best = static_cast<std::size_t>(std::max_element(score.begin(), score.end()) - score.begin());
-    if (!(score[best] > 1e-12)) {  // no unit makes it a product: nothing to tell them apart
+    const std::vector<std::size_t> possible = possible_units(diagonal);
+    if (possible.empty()) {  // no unit makes it a product: nothing to tell them apart
         guess.unit = "mm";
         guess.sentence =
             "no usual unit makes this a thing one can hold (" + short_number(diagonal) + " units across); mm is taken";
         return guess;
     }
+    const std::size_t best = possible.front();
     guess.unit = kUnits[best].name;
     guess.metres_per_unit = *metres_per(guess.unit);
     guess.sentence = "numbers look like " + std::string(kUnits[best].plural) + ": the model would be " +
                      size_text(bounds.size() * guess.metres_per_unit);
-    // Beside millimetres that make a usual product nothing else is named; beside metres centimetres and inches are.
-    constexpr double kPossible = 0.35;  // of the best score
-    std::array<std::size_t, 4> order{0, 1, 2, 3};
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return score[a] > score[b]; });
     const char* join = "; possible too: as ";
-    for (const std::size_t i : order) {
-        if (i == best || score[i] < kPossible * score[best]) continue;
+    for (const std::size_t i : possible) {
+        if (i == best) continue;
         if (guess.second.empty()) guess.second = kUnits[i].name;
         guess.sentence += join + std::string(kUnits[i].plural) + " " +
                           size_text(bounds.size() * *metres_per(kUnits[i].name)) + " (" + kUnits[i].name + ")";
@@ -185,8 +205,7 @@ std::vector<std::string> describe(const MeshSummary& s) {
     if (r.file.loose_triangles) lines.push_back("the triangles came loose and were joined (as in STL)");
     if (!extras.empty()) lines.push_back("has " + extras.substr(0, extras.size() - 2));
     lines.push_back("unit: " + s.unit.sentence);
-    if (std::abs(s.unit.metres_per_unit / s.metres_per_unit - 1) > 1e-9)
-        lines.push_back("warning: it was loaded with another unit; check --unit");
+    if (!is_loaded_in_possible_unit(s)) lines.push_back("warning: it was loaded with another unit; check --unit");
     const std::vector<Message> defects = describe_defects(r);
     if (defects.empty()) lines.push_back("no defects");
     for (const Message& d : defects) lines.push_back("repaired: " + d.text());
