@@ -161,8 +161,9 @@ double landing_loan(const LawOptions& options, const LawState& s) {
     return 0.5 * coupling_of(options) * b * b * std::clamp(2 - 0.5 * s.landed / b, 0.0, 1.0);
 }
 
-/// Δx̂: the motion of the arm in the j-th period from the last one on, m. Two low passes in a row lag by T a and 2 T a
-/// of a speed that grows by a: their difference takes the lag away. A count stirs it up by a third of a count.
+/// Δx̂: the motion of the arm in the j-th period from the last one on, m. Two low passes in a row of τ = 4 ms lag by τ a
+/// and 2 τ a of a speed that grows by a m/s²: their difference takes the lag away. A count stirs it up by 0.4 of a
+/// count in the next period, by a whole one in the 13th.
 Vec3 expected_motion(const LawState& s, std::size_t j) {
     const double ahead = 1 + static_cast<double>(j) * std::expm1(T / kVelocityTime);
     return T * (s.arm_velocity + ahead * (s.arm_velocity - s.arm_velocity_before));

@@ -40,7 +40,8 @@
 ///    e′ is e + w less what forces on their way will take, by the longer of two delays. It keeps e >= 0. P lets a force
 ///    that ends with its energy fall by k â a period at most: it takes the motion Δx̂ that goes on as the arm has sped
 ///    up, without its counts (â as a, with Δx̂), and e″ = e′ − ½ f₋₁ · Δx̂. f₋₁ is the force of the period before. Where
-///    a < 0 the tank only fills: P = √(2 k e″) − k â.
+///    â <= 0 the tank only fills: P = √(2 k e″) − k â. Where a <= 0, e′ / a sets no limit. Δx̂ is of the last period in
+///    k_max |Δx̂|, of the next one in â and e″.
 ///    A landing lends w = ½ K b², b = ½ count + a of a hand at rest: so much a spring of K lacks, pressed slowly from
 ///    nothing, to keep what the limit of |f| asks for. w ends linearly between 2 b and 4 b of the contact's path.
 ///

@@ -2,6 +2,7 @@
 #include <imgui.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "app/input/imgui_feed.h"
@@ -46,18 +47,21 @@ TEST_F(Feed, KeysOutsideTheTableAreHarmless) {
 std::string error_of(const std::string& text) {
     const std::string path = testing::TempDir() + "/tuft_script_test_" + std::to_string(getpid()) + ".txt";
     std::ofstream(path) << text;
+    std::string fault;
     try {
         parse_script(path);
-        return "";
     } catch (const Error& error) {
-        return std::string(error.what()).substr(path.size());
+        fault = std::string(error.what()).substr(path.size());
     }
+    std::filesystem::remove(path);
+    return fault;
 }
 
 TEST(ScriptParse, ReadsPlacesQuotesAndComments) {
     const std::string path = testing::TempDir() + "/tuft_script_good_" + std::to_string(getpid()) + ".txt";
     std::ofstream(path) << "# a comment\n\nstroke 10,20 30%,40%,0.5  # more\nclick \"Frame all\"\n";
     const auto commands = parse_script(path);
+    std::filesystem::remove(path);
     ASSERT_EQ(commands.size(), 2u);
     EXPECT_EQ(commands[0].line, 3);
     EXPECT_EQ(commands[0].points[0].x, 10);

@@ -230,7 +230,8 @@ TEST_F(WritingOnModel, MirroredTurnedAndSmallInAPlateItIsTheSame) {
 }
 
 TEST_F(WritingOnModel, InItsColoursItIsTheSame) {
-    Writing w = read_writing(flag());
+    const std::string file = flag();
+    Writing w = read_writing(file);
     w.scale = 0.8;
     w.turn = 0.3;
     w.mirrored = true;
@@ -245,6 +246,7 @@ TEST_F(WritingOnModel, InItsColoursItIsTheSame) {
     // The project holds the inks as they were mixed: painted again it is the same.
     const nlohmann::json again = test::tuft("replay " + folder_ + "/studio.tuft", folder_ + "/out.json");
     EXPECT_EQ(again["canvas_hash"], studio.hash);
+    std::filesystem::remove(file);
 }
 
 TEST_F(WritingOnModel, OnACarsDoorItIsTheSame) {

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 
 #include "brush/tuft/tuft.h"
@@ -14,10 +15,18 @@
 namespace tuft::brush {
 namespace {
 
-std::string write(const std::string& name, const std::string& text) {
-    const std::string path = testing::TempDir() + std::to_string(getpid()) + "_" + name;
+/// Rows of a file of that text.
+std::vector<SweepRow> read_back(const std::string& text) {
+    const std::string path = testing::TempDir() + "/tuft_sweep_" + std::to_string(getpid()) + ".csv";
     std::ofstream(path) << text;
-    return path;
+    try {
+        std::vector<SweepRow> rows = read_sweep(path);
+        std::filesystem::remove(path);
+        return rows;
+    } catch (...) {
+        std::filesystem::remove(path);
+        throw;
+    }
 }
 
 TEST(Sweep, ABrushOfAnotherSizeDrawsTheSameLineInThatSize) {
@@ -181,15 +190,14 @@ TEST(Sweep, ChangesEvenlyWithTheBrush) {
 
 TEST(Sweep, TableReadsBack) {
     const std::vector<SweepRow> rows{{0.002, 0.0015, 0.003, 0.001}, {0.004, 0.0035, 0.005, 0.0012}};
-    const std::string path = write("sweep.csv", "# a brush\n" + sweep_csv(rows));
-    const std::vector<SweepRow> back = read_sweep(path);
+    const std::vector<SweepRow> back = read_back("# a brush\n" + sweep_csv(rows));
     ASSERT_EQ(back.size(), 2u);
     EXPECT_NEAR(back[1].width, 0.0035, 1e-9);
     EXPECT_NEAR(back[0].offset, 0.001, 1e-9);
 }
 
 TEST(Sweep, ATableMayHaveAnyOfTheColumns) {
-    const std::vector<SweepRow> rows = read_sweep(write("widths.csv", "z_mm,width_mm\n1,0.9\n2,2\n"));
+    const std::vector<SweepRow> rows = read_back("z_mm,width_mm\n1,0.9\n2,2\n");
     ASSERT_EQ(rows.size(), 2u);
     EXPECT_NEAR(rows[1].width, 2e-3, 1e-12);
     EXPECT_TRUE(std::isnan(rows[1].drag));
@@ -198,11 +206,11 @@ TEST(Sweep, ATableMayHaveAnyOfTheColumns) {
 
 TEST(Sweep, ExcludedRowsAreSkippedAndMistakesNamed) {
     const std::vector<SweepRow> rows =
-        read_sweep(write("some.csv", "z_mm,width_mm,drag_mm,offset_mm,excluded_by_authors\n1,1,1,1,0\n2,9,9,9,1\n"));
+        read_back("z_mm,width_mm,drag_mm,offset_mm,excluded_by_authors\n1,1,1,1,0\n2,9,9,9,1\n");
     EXPECT_EQ(rows.size(), 1u);
     const auto error_of = [](const std::string& text) {
         try {
-            read_sweep(write("bad.csv", text));
+            read_back(text);
         } catch (const Error& e) {
             return std::string(e.what());
         }

@@ -135,6 +135,7 @@ TEST(SvgImage, AFileLiesInTheDrawingsFolder) {
     }
     EXPECT_NE(read(image("../out.png"), folder / "in").notes[0].find("'s folder"), std::string::npos);
     EXPECT_TRUE(read(image("a b.png")).areas.empty()) << "no folder, no file";
+    std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -162,6 +162,10 @@ TEST(Heads, LinesOfAPenBeginAsTheTypefacesDo) {
     const std::vector<Vec2> level{{100, 500}, {500, 510}}, dot{{100, 500}, {100, 400}};
     EXPECT_EQ(head_of(level, apart), level);
     EXPECT_EQ(head_of(dot, apart), dot);
+    // 撇折: the second arm runs back beyond the first point. The head is not drawn out with it: by 35 units at most,
+    // what the axis of the first arm and its first point may differ by.
+    const std::vector<Vec2> fold{{600, 800}, {500, 650}, {860, 800}};
+    EXPECT_LT(glm::distance(head_of(fold, apart)[0], fold[0]), 48 + 35);
     Glyph stated{.code = U'中',
                  .strokes = {{.median = {{300, 900}, {300, 500}}, .outline = {{{0, 0}, {1, 0}, {0, 1}}}}}};
     EXPECT_EQ(with_heads(stated).strokes[0].median, stated.strokes[0].median);

@@ -44,8 +44,8 @@ class Script {
     /// Adds the events before a frame. `now`: seconds on the window's clock. Throws `Error` where an expectation fails.
     void before_frame(Studio& studio, EventQueue& events, double now);
     /// Returns whether the next frame is drawn where no window shows it; call it once a frame. It is for a screenshot,
-    /// and one of `draw-every` in which the script does not only wait. The frame that ends a wait counts, so that each
-    /// command begins on what is drawn.
+    /// and one of `draw-every` in which the script does not only wait. The frame that ends a wait is one of these: with
+    /// `draw-every` 1 each command begins on what is drawn.
     bool looks();
     /// Writes pictures after a frame of that size in pixels. `drawn`: not only its events were handled.
     void after_frame(Studio& studio, int width, int height, bool drawn);

@@ -40,7 +40,7 @@
 ///                           arm-recording, arm-port, arm-gain, arm-limit (N), arm-scale, arm-view (on, off),
 ///                           arm-pause, arm-clutch, arm-palette, arm-panel, arm-emergency (on, off), scale,
 ///                           left-handed, keymap, section, section-axis, see-through, atlas, draw-every (frames of
-///                           which one is drawn, for tests)
+///                           which one is drawn without a window, for tests; all screenshots are)
 ///   undo  redo  save FILE  export FILE  close
 ///   screenshot FILE.png
 ///   expect strokes N | expect model | expect no-model | expect kept | expect message TEXT | expect label LABEL
@@ -53,8 +53,8 @@
 ///                           program is only counted
 ///   report                  frames drawn, seconds, delays from each sample to its ink on the screen and processor
 ///                           time since the last one, the time of the last undo, the peak of memory and where the view
-///                           is, on standard output. Without a window, frames in which the script only waits are not
-///                           drawn unless events are paced
+///                           is, on standard output. Without a window, frames in which the script only waits and those
+///                           that draw-every leaves out are not drawn
 ///   lose-graphics           as if the graphics driver had been reset
 ///   names                   labels that can be clicked, on standard output
 ///   places                  the same after the pixels where each lies

@@ -264,6 +264,9 @@ void check_preset(const Preset& p, const std::string& source) {
             throw Error(source, "'ferrule.slant_mm' and 'ferrule.splay_deg' need 'ferrule.width_mm'");
     }
     if (p.spines == 1 && p.width > 0) throw Error(source, "'ferrule.width_mm' needs 'ferrule.spines' above 1");
+    if (p.curl_radius > 0 && p.curl_radius < 0.5 * p.length * (1 - 1e-9)) {
+        throw Error(source, "'ferrule.curl_radius_mm' must be 0 or at least half of 'shape.length_mm'");
+    }
     if (p.toe > 0 && p.slant > 0) throw Error(source, "'ferrule.toe_mm' and 'ferrule.slant_mm' exclude each other");
     if (std::max(p.toe, p.slant) > 0.8 * p.length) {
         throw Error(source, "the hair at the ferrule's edge must be a fifth of 'shape.length_mm' or longer");

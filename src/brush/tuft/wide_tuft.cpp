@@ -93,8 +93,8 @@ struct FilmHeight {
 };
 
 /// Part of the tuft's hair that bends inwards over the face between two spines: of a row what lies beyond it, on the
-/// side where that is less.
-double held_inwards(const Tuft& tuft, const Beside& beside) {
+/// side where that is less; of a ring the smaller share of the two.
+double inward_share(const Tuft& tuft, const Beside& beside) {
     double before = 0, all = 0;
     for (int k = 0; k < static_cast<int>(tuft.spines.size()); ++k) {
         all += tuft.spines[k].share;
@@ -180,7 +180,7 @@ struct Coupled {
                 pair.depth.push_back(std::max(l.y + r.y, kThinnest) / length);
             }
             for (const double s : beside.shift) pair.rest_shift.push_back(s / length);
-            pair.curl = held_inwards(tuft, beside);
+            pair.curl = inward_share(tuft, beside);
             pair.memory = &beside.memory;
             pairs.push_back(std::move(pair));
         }

@@ -17,9 +17,10 @@ void release_free_memory() {
 
 void keep_free_memory_below(std::size_t bytes) {
 #ifdef __GLIBC__
-    constexpr std::size_t kMost = std::size_t{32} << 20;  // that glibc takes as a threshold
+    constexpr std::size_t kMost = std::size_t{1} << 30;  // an int holds it
+    constexpr int kLargeBlock = 4 << 20;
     ::mallopt(M_TRIM_THRESHOLD, static_cast<int>(std::min(bytes, kMost)));
-    ::mallopt(M_MMAP_THRESHOLD, 4 << 20);
+    ::mallopt(M_MMAP_THRESHOLD, kLargeBlock);
 #else
     (void)bytes;
 #endif

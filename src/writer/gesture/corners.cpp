@@ -55,7 +55,7 @@ Arm arm_of(const StrokeLine& line, const StrokeSides& sides, std::size_t segment
 }
 
 /// How far one may go from `p` along the unit vector `n` until `half` units from an axis are reached.
-double room_to_edge(const Vec2& p, const Vec2& n, const Vec2& axis, const Vec2& normal, double half) {
+double distance_to_edge(const Vec2& p, const Vec2& n, const Vec2& axis, const Vec2& normal, double half) {
     const double cosine = glm::dot(n, normal);
     return cosine < kLeastCosine ? 1e9 : (half - glm::dot(p - axis, normal)) / cosine;
 }
@@ -81,10 +81,10 @@ void limit_corners(const StrokeLine& line, StrokeSides& sides) {
                 double& inner = (to_left ? sides.left : sides.right)[s + a][k];
                 if (std::abs(at - corner) <= kOuterReach)
                     for (const Arm& arm : arms)
-                        outer = std::min(
-                            outer, std::max(1.0, room_to_edge(p, out, arm.at, arm.outward, arm.outer + kOuterSlack)));
+                        outer = std::min(outer, std::max(1.0, distance_to_edge(p, out, arm.at, arm.outward,
+                                                                               arm.outer + kOuterSlack)));
                 if (std::abs(at - corner) > kInnerReach) continue;
-                const double edge = room_to_edge(p, -out, arms[a].at, -arms[a].outward, arms[a].inner);
+                const double edge = distance_to_edge(p, -out, arms[a].at, -arms[a].outward, arms[a].inner);
                 if (edge > 1e8) continue;
                 inner = std::clamp(inner, std::max(1.0, std::min(edge, arms[a].inner) - kInnerLess),
                                    std::max(1.0, edge + kInnerMore));

@@ -6,7 +6,7 @@
 /// Sides at the corners of centre lines that are not the typeface's. Called by `SideTable::predict`.
 namespace tuft::writer {
 
-/// Keeps predicted sides at corners near the edges of both arms. The table knows corners of a typeface's centre lines,
+/// Limits predicted sides at corners by the edges of both arms. The table knows corners of a typeface's centre lines,
 /// which are cut; of a line drawn to the corner itself it predicts a ball outside and spikes inside.
 ///
 /// An arm's edge is a parallel to its axis, the chord from 100 to 40 units off the corner. Within 60 units along the

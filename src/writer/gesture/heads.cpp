@@ -48,17 +48,18 @@ std::optional<std::vector<Vec2>> with_head(const Glyph& glyph, std::size_t strok
     const LineSegment& main = line.segments[has_cue ? 1 : 0];
     const std::optional<Head> usual = head_of(main);
     if (!usual || main.length < kLeast) return std::nullopt;
-    double room = 1e300;
+    double nearest = 1e300;
     for (std::size_t k = 0; k < glyph.strokes.size(); ++k)
-        if (k != stroke) room = std::min(room, distance_to(line.points.front(), glyph.strokes[k].median));
-    if (room < kOn) return std::nullopt;
+        if (k != stroke) nearest = std::min(nearest, distance_to(line.points.front(), glyph.strokes[k].median));
+    if (nearest < kOn) return std::nullopt;
     const double length = line.along[main.last];
     const Vec2 from = line.at(std::min(kAxisFrom, kAxisFromPart * length)),
                axis = glm::normalize(line.at(std::min(kAxisTo, kAxisToPart * length)) - from), left(-axis.y, axis.x);
-    const double aside = usual->left * (room < kNear ? kNearPart : 1);
+    const double aside = usual->left * (nearest < kNear ? kNearPart : 1);
     if (glm::dot(line.points.front() - from, left) / aside > kEnough) return std::nullopt;
     double first = 0;
-    for (const Vec2& p : line.points) first = std::min(first, glm::dot(p - from, axis));
+    for (std::size_t i = 0; i <= main.last; ++i)  // a later segment may run back beside this one
+        first = std::min(first, glm::dot(line.points[i] - from, axis));
     std::vector<Vec2> out{from + first * axis + aside * left, from + (first + usual->before) * axis};
     std::size_t next = 1;
     while (next + 1 < line.points.size() &&

@@ -13,7 +13,7 @@ namespace tuft::writer {
 /// begins beside its axis, as far along it as before, and joins it. With L the length of the segment, units, the
 /// medians over heads of hanzi-writer-data, about 3,200 S, 1,300 P and 280 T:
 ///
-/// |                     | to the left of the way  | joins it after |
+/// |                     | left of the direction   | joins it after |
 /// |---------------------|-------------------------|----------------|
 /// | S                   | −min(20 + 0.038 L, 43)  | 35             |
 /// | P                   | −min(28 + 0.04 L, 48)   | 25             |
