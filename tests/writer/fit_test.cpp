@@ -9,6 +9,7 @@
 #include "core/system/parallel.h"
 #include "stroke/drawing/plane_ink.h"
 #include "writer/fit/writer.h"
+#include "writer/gesture/heads.h"
 #include "writer/glyphs/glyph_source.h"
 
 namespace tuft::writer {
@@ -60,7 +61,7 @@ TEST(Writer, InkCoversThePredictedArea) {
     stroke::WidthTables tables;
     const BrushHand hand{tables.preset(writer.brush()), tables.of(writer.brush()), tables.holder(writer.brush()),
                          writer.unit()};
-    const Glyph glyph = bundled(U'大');
+    const Glyph glyph = with_heads(bundled(U'大'));
     const auto strokes = writer.write({glyph}).front();
     for (std::size_t s = 0; s < strokes.size(); ++s) {
         const StrokeLine line = make_stroke_line(glyph.strokes[s].median);

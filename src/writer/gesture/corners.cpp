@@ -10,6 +10,7 @@ constexpr double kAxisNear = 40, kAxisFar = 100;           // units from a corne
 constexpr double kAxisNearPart = 0.4, kAxisFarPart = 0.9;  // of its length, at most
 constexpr double kOuterReach = 60, kInnerReach = 110;      // units along the line in which sides are limited
 constexpr double kOuterSlack = 6;                          // units beyond either arm
+constexpr double kMiter = 1.6;                             // of the wider arm, the outer side of a sharp corner
 constexpr double kHead = 70;                               // units: a shorter first segment is a head
 constexpr double kInnerMore = 6, kInnerLess = 8;           // units from the inner edge of the own arm
 constexpr double kThickened = 1.2;                         // of the median outer side of an arm, before a corner
@@ -71,6 +72,7 @@ void limit_corners(const StrokeLine& line, StrokeSides& sides) {
                    v = line.direction(std::min(corner + kAxisNear, line.length()));
         const bool to_left = u.x * v.y - u.y * v.x > 0;
         const Arm arms[] = {arm_of(line, predicted, s, true, to_left), arm_of(line, predicted, s + 1, false, to_left)};
+        const double most = kMiter * (std::max(arms[0].outer, arms[1].outer) + kOuterSlack);
         for (std::size_t a = 0; a < 2; ++a)
             for (std::size_t k = 0; k < kKnots; ++k) {
                 const LineSegment& segment = line.segments[s + a];
@@ -79,10 +81,12 @@ void limit_corners(const StrokeLine& line, StrokeSides& sides) {
                            out = (to_left ? 1.0 : -1.0) * Vec2(d.y, -d.x);
                 double& outer = (to_left ? sides.right : sides.left)[s + a][k];
                 double& inner = (to_left ? sides.left : sides.right)[s + a][k];
-                if (std::abs(at - corner) <= kOuterReach)
+                if (std::abs(at - corner) <= kOuterReach) {
+                    outer = std::min(outer, most);
                     for (const Arm& arm : arms)
                         outer = std::min(outer, std::max(1.0, distance_to_edge(p, out, arm.at, arm.outward,
                                                                                arm.outer + kOuterSlack)));
+                }
                 if (std::abs(at - corner) > kInnerReach) continue;
                 const double edge = distance_to_edge(p, -out, arms[a].at, -arms[a].outward, arms[a].inner);
                 if (edge > 1e8) continue;

@@ -17,7 +17,9 @@ constexpr double kOn = 24;                                 // units: a head on a
 constexpr double kEnough = 0.8;                            // of the distance aside
 constexpr double kAxisFrom = 70, kAxisTo = 140;            // units from the first point, of the axis
 constexpr double kAxisFromPart = 0.4, kAxisToPart = 0.75;  // of the length, at most
-constexpr double kSteep = 52 * kDegree;                    // of a 提, from which on it begins below its axis
+constexpr double kBend = 0.62, kJoined = 1.9;              // of `Head::before`: a quadratic curve without a corner
+constexpr int kHeadPoints = 8;
+constexpr double kSteep = 52 * kDegree;  // of a 提, from which on it begins below its axis
 
 /// Where a head begins, units: to the left of the axis in the direction of writing, and before it joins the axis.
 struct Head {
@@ -26,7 +28,7 @@ struct Head {
 
 std::optional<Head> head_of(const LineSegment& s) {
     if (s.code == 'S') return Head{-std::min(20 + 0.038 * s.length, 43.0), 35};
-    if (s.code == 'P') return Head{-std::min(28 + 0.04 * s.length, 48.0), 25};
+    if (s.code == 'P') return Head{-std::min(28 + 0.04 * s.length, 48.0), 30};
     if (s.code == 'T') return s.direction < kSteep ? Head{31, 40} : Head{-40, 49};
     return std::nullopt;
 }
@@ -60,7 +62,13 @@ std::optional<std::vector<Vec2>> with_head(const Glyph& glyph, std::size_t strok
     double first = 0;
     for (std::size_t i = 0; i <= main.last; ++i)  // a later segment may run back beside this one
         first = std::min(first, glm::dot(line.points[i] - from, axis));
-    std::vector<Vec2> out{from + first * axis + aside * left, from + (first + usual->before) * axis};
+    const Vec2 start = from + first * axis + aside * left, bend = from + (first + kBend * usual->before) * axis,
+               end = from + (first + kJoined * usual->before) * axis;
+    std::vector<Vec2> out;
+    for (int k = 0; k <= kHeadPoints; ++k) {
+        const double t = static_cast<double>(k) / kHeadPoints, u = 1 - t;
+        out.push_back(u * u * start + 2 * u * t * bend + t * t * end);
+    }
     std::size_t next = 1;
     while (next + 1 < line.points.size() &&
            (line.along[next] < 0.5 * kAxisFrom || glm::dot(line.points[next] - out.back(), axis) < StrokeLine::kApart))
