@@ -203,6 +203,16 @@ double most_force(const LawOptions& options, const LawState& s, double left, con
     return ahead > 0 ? std::min(most, left / ahead) : most;
 }
 
+/// Step 6: `f`, no more than the tank lets out. Takes from `left` J what it may need.
+Vec3 let_out(const LawOptions& options, const LawState& s, const Vec3& moved, const Vec3& f, double& left) {
+    const double size = glm::length(f);
+    if (!(size > 0)) return f;
+    const Vec3 u = f / size;
+    const Vec3 let = limited(f, most_force(options, s, left, moved, u));
+    left = std::max(0.0, left - glm::length(let) * std::max(0.0, path_ahead(options, s, moved, u)));
+    return let;
+}
+
 /// Step 6 of a moment, which may take `left` J while the wrist goes on turning by `turned` a period.
 Vec3 limited_moment(const Vec3& moment, double left, const Vec3& turned) {
     const double size = glm::length(moment);
@@ -270,13 +280,9 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     fill_tank(s, was_free, in.hair ? gain * in.hair->stored : 0);
     LawOutput out{.root = root, .hard = held.hard};
     double left = energy_left(options, s);
-    if (const double size = glm::length(f); size > 0) {
-        const Vec3 u = f / size;
-        const double most = most_force(options, s, left, moved, u);
-        out.limited = size > most;
-        if (out.limited) f = limited(f, most);
-        left = std::max(0.0, left - glm::length(f) * std::max(0.0, path_ahead(options, s, moved, u)));
-    }
+    const Vec3 let = let_out(options, s, moved, f, left);
+    out.limited = let != f;
+    f = let;
     const double kept = wanted > 0 ? glm::length(f) / wanted : in.pass;
     s.force = f;
     s.sent[s.n_sent++ % s.sent.size()] = f;
