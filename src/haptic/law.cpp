@@ -17,6 +17,7 @@ constexpr double kTankKeeps = 30e-6;      // e_0, J, of what came in and is stor
 constexpr double kTankStiffness = 1.25;   // of K: what a full spring gives is never held back
 constexpr double kPlannedFall = 0.9;      // of k_max: a hand that speeds up meanwhile makes the fall steeper
 constexpr double kFallFree = 0.08;        // N that a force may fall in a period at rest
+constexpr double kStep = 0.12;            // N that a force may change by in a period at rest
 constexpr double kReserve = 0.5;          // of the work of a period: counts change by it what is planned
 constexpr double kMostDelayed = 12;       // periods
 constexpr double kLeast = 0.5e-6;         // J to which an empty tank is filled, so that it does not lock at no force
@@ -169,6 +170,11 @@ Vec3 expected_motion(const LawState& s, std::size_t j) {
     return T * (s.arm_velocity + ahead * (s.arm_velocity - s.arm_velocity_before));
 }
 
+/// By what a spring of k_max follows the motion of the last period, N.
+double followed(const LawOptions& options, const LawState& s) {
+    return options.limits.max_stiffness / options.scale * glm::length(expected_motion(s, 0));
+}
+
 /// e′, J.
 double energy_left(const LawOptions& options, const LawState& s) {
     double pending = 0;  // what forces on their way will take, by the longer of two delays
@@ -198,8 +204,8 @@ double most_force(const LawOptions& options, const LawState& s, double left, con
     const Vec3 next = expected_motion(s, 1);
     const double kept = left - kReserve * last * std::max(0.0, glm::dot(next, u));
     const double planned = spring_force(tank_stiffness(options), std::max(0.0, kept), path_ahead(options, s, next, u));
-    const double fall = options.limits.max_stiffness / options.scale * glm::length(expected_motion(s, 0)) + kFallFree;
-    const double most = std::max(planned, last - fall), ahead = path_ahead(options, s, moved, u);
+    const double most = std::max(planned, last - followed(options, s) - kFallFree),
+                 ahead = path_ahead(options, s, moved, u);
     return ahead > 0 ? std::min(most, left / ahead) : most;
 }
 
@@ -269,6 +275,8 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     Vec3 f = K * stretch + B * (velocity - s.arm_velocity);
     if (options.restore) s.restored += (T / kRestoreTime) * (in.arm - root);
 
+    // A blow of the ferrule is felt as one; what safety fades must not wait.
+    if (!held.hard && in.pass == 1 && in.trust == 1) f = s.force + limited(f - s.force, followed(options, s) + kStep);
     const double wanted = glm::length(f);
     f = limited(f, std::min(options.limits.max_force, options.most_force)) * in.pass;
 

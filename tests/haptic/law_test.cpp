@@ -115,6 +115,31 @@ TEST(Law, AForceWhoseEnergyEndsFallsEvenly) {
             }
 }
 
+// A light root does not follow a hand that turns round at 55 m/s²: the damper's force would change by B 55 m/s² T,
+// 0.28 N on Touch. Wolf hair end on.
+TEST(Law, AHandThatTurnsRoundFeelsNoStep) {
+    for (const DeviceLimits& limits : device_presets())
+        for (const double rate : {60.0, 83.0, 120.0}) {  // rad/s
+            const LawOptions options{.limits = limits, .gain = 15};
+            const double size = 55 / (rate * rate);  // m
+            LawState state;
+            Vec3 before{0}, at{0};
+            for (int i = 0; i < 1000; ++i) {
+                const Vec3 x{0, 0, size * (std::cos(rate * kPeriod * i) - 0.3)};
+                const HairAnswer hair = spring(state.root.z, 367);
+                const Vec3 measured = limits.count * glm::round(x / limits.count);
+                const Vec3 f = step_law(options, state, {.arm = measured, .hair = &hair}).force;
+                if (i > 20) {  // the motion begins at once
+                    EXPECT_LE(glm::distance(f, before),
+                              limits.max_stiffness * glm::distance(x, at) + (limits.name == "falcon" ? 0.35 : 0.15))
+                        << limits.name << " " << rate << " " << i;
+                }
+                before = f;
+                at = x;
+            }
+        }
+}
+
 // A force that pushes whichever way the hand goes would be a motor; the tank ends it.
 TEST(Law, AForceThatWorksOnItsOwnRunsOutOfEnergy) {
     for (const DeviceLimits& limits : device_presets()) {

@@ -20,11 +20,6 @@ double allowed_step(const DeviceLimits& limits) {
     return limits.name == "falcon" ? 0.35 : 0.15;
 }
 
-/// Goat hair tapped on the sheet makes steps of 0.19 N on Touch, where the arm is slow against its counts.
-double allowed_tap_step(const DeviceLimits& limits) {
-    return limits.name == "touch" ? 0.2 : allowed_step(limits);
-}
-
 /// `device`: one in turn for each motion, the first motion on the device of this number; negative: all for each.
 void expect_passive(const std::string& place, const std::string& brush, double delay, int device = -1) {
     const TrialModel f = load_trial_model(place);
@@ -41,7 +36,7 @@ void expect_passive(const std::string& place, const std::string& brush, double d
             // A contact gives back no more than it took: 1 µJ is a hundredth of what a light touch stores.
             EXPECT_GE(r.least_energy, -kMicrojoule);
             EXPECT_GE(r.least_with_arm, -kMicrojoule);
-            EXPECT_LE(r.largest_step, is_tap(motion) ? allowed_tap_step(limits) : allowed_step(limits));
+            EXPECT_LE(r.largest_step, allowed_step(limits));
             EXPECT_LE(r.largest_force, std::min(limits.max_force, kForceLimit) + 1e-9);
             EXPECT_GT(r.contacts, 0u);
         }
