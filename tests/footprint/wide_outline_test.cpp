@@ -144,7 +144,7 @@ TEST(WideOutline, EdgeIsThatOfTheMouth) {
     }
 }
 
-/// Force and width of a row of 3, 5 and 9 spines of straight hair, turned against its path, leaning and dragged.
+/// Force and width of a row of 3, 5 and 9 spines, turned against its path, leaning and dragged.
 struct Refined {
     Recycled<double> force, width;
 };
@@ -153,7 +153,6 @@ Refined refined(const std::string& name, double wetness) {
     for (const int count : {3, 5, 9}) {
         brush::Preset p = brush::load_preset(name);
         p.spines = count;
-        p.curl_radius = 0;
         brush::Tuft tuft = brush::make_tuft(p, 7);
         tuft.wetness = wetness;
         brush::TuftState state;
@@ -180,8 +179,7 @@ double order_of(const Recycled<double>& v) {
     return p;
 }
 
-/// What a row draws converges with the square of its pitch. Of interlocked hair, whose strips slide where the press of
-/// their curl lets them, see WideTuft.RefinedRowsConverge.
+/// What a row draws converges with the square of its pitch.
 TEST(WideOutline, RefinedRowsConvergeWithTheSquareOfTheirPitch) {
     const Refined flat = refined("flat-12", 1);
     EXPECT_GT(order_of(flat.force), 1.8);
