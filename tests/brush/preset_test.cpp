@@ -88,7 +88,6 @@ TEST(Presets, MistakesAreNamedWithTheirLine) {
     EXPECT_THAT(error_of("[bending]\nspine = \"rope\"\n"),
                 testing::HasSubstr("must be \"rod\", \"table\", \"macro\", \"chain\" or \"truss\""));
     EXPECT_THAT(error_of("[shape\nlength_mm = 3"), testing::HasSubstr("test.toml:1"));
-    EXPECT_THAT(error_of("[ferrule]\ncurl_radius_mm = 1e-6\n"), testing::HasSubstr("at least half of"));
     EXPECT_THAT(error_of("[split]\nat = 0.5\nmerge_at = 0.9\n"), testing::HasSubstr("must not exceed"));
 }
 

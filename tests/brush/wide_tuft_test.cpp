@@ -300,28 +300,6 @@ TEST(WideTuft, InkHoldsSpinesTogether) {
     EXPECT_GT(widest_opening(0), widest_opening(1));
 }
 
-/// A wet flat that is drawn back over its path pushes its hair before it. Hair that swings round sideways there sweeps
-/// up to twice the brush's width; interlocked bristle holds the row together against that.
-TEST(WideTuft, AFlatDrawnBackKeepsItsWidth) {
-    constexpr double kStep = 4e-4;  // m
-    for (const char* name : {"flat-12", "filbert-12"}) {
-        Tuft tuft = make_tuft(load_preset(name), 1);
-        const double length = tuft.preset.length;
-        const int there = 30 + static_cast<int>(length / kStep), back = static_cast<int>(1.6 * length / kStep);
-        double before = 0, widest = 0;
-        for (int i = 0; i <= there + back; ++i) {
-            Pose pose = pose_at(tuft.preset, {.depth = 0.3, .motion = {0, -kStep, 0}}, std::min(i, there));
-            // A hand does not come back on the same line: 3.4 degrees off.
-            if (i > there) pose.position += (i - there) * kStep * Vec3{0.06, 1, 0};
-            const double width = touching_width(step(tuft, pose, std::span(&kGround, 1), 8e-3));
-            if (i == there) before = width;
-            if (i > there) widest = std::max(widest, width);
-        }
-        // What a painter takes for the same width. Straight hair: 1.39 and 1.28.
-        EXPECT_LT(widest, 1.15 * before) << name;
-    }
-}
-
 /// A wet filbert that turns as it is lifted stays whole: its shorter outer spines leave the surface first and splay by
 /// more than ink bridges, which the hair between shares.
 TEST(WideTuft, AWetFilbertThatTurnsAsItLiftsStaysWhole) {

@@ -47,7 +47,6 @@ constexpr std::array kFields = {
     Field{"ferrule", "hair_diameter_mm", &Preset::hair_diameter, kMillimetre, 0.01, 2},
     Field{"ferrule", "surface_tension_n_m", &Preset::surface_tension, 1, 0, 1},
     Field{"ferrule", "hair_friction", &Preset::hair_friction, 1, 0, 2},
-    Field{"ferrule", "curl_radius_mm", &Preset::curl_radius, kMillimetre, 0, 10000},
     Field{"hold", "lean_rad", &Preset::lean, 1, 0, 0.8},
     Field{"foam", "modulus_kpa", &Preset::modulus, 1e3, 0, 1000},
     Field{"foam", "solid", &Preset::solid, 1, 0.005, 0.3},
@@ -264,9 +263,6 @@ void check_preset(const Preset& p, const std::string& source) {
             throw Error(source, "'ferrule.slant_mm' and 'ferrule.splay_deg' need 'ferrule.width_mm'");
     }
     if (p.spines == 1 && p.width > 0) throw Error(source, "'ferrule.width_mm' needs 'ferrule.spines' above 1");
-    if (p.curl_radius > 0 && p.curl_radius < 0.5 * p.length * (1 - 1e-9)) {
-        throw Error(source, "'ferrule.curl_radius_mm' must be 0 or at least half of 'shape.length_mm'");
-    }
     if (p.toe > 0 && p.slant > 0) throw Error(source, "'ferrule.toe_mm' and 'ferrule.slant_mm' exclude each other");
     if (std::max(p.toe, p.slant) > 0.8 * p.length) {
         throw Error(source, "the hair at the ferrule's edge must be a fifth of 'shape.length_mm' or longer");
@@ -323,8 +319,8 @@ Preset scaled(const Preset& preset, double factor) {
                                    &Preset::end_compliance, &Preset::adhesion_range, &Preset::adhesion})
         p.*length *= factor;
     if (p.spines > 1) {
-        for (double Preset::*length : {&Preset::width, &Preset::toe, &Preset::slant, &Preset::hair_diameter,
-                                       &Preset::surface_tension, &Preset::curl_radius})
+        for (double Preset::*length :
+             {&Preset::width, &Preset::toe, &Preset::slant, &Preset::hair_diameter, &Preset::surface_tension})
             p.*length *= factor;
     }
     for (double Preset::*length : {&Preset::dome, &Preset::rim, &Preset::unevenness}) p.*length *= factor;

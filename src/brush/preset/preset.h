@@ -55,7 +55,6 @@ struct Preset {
     double hair_diameter = 1e-4;    ///< m, of one hair
     double surface_tension = 0.05;  ///< N/m, of the ink between two spines
     double hair_friction = 0.3;     ///< Coulomb μ between hair and hair
-    double curl_radius = 0;         ///< m, of hair that curls towards the middle of its row; 0: straight
 
     /// rad, lean of the holder ahead, across its broad side, of a blade (slant > 0) along it, in a hand that gives no
     /// tilt

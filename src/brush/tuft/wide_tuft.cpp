@@ -92,19 +92,6 @@ struct FilmHeight {
     }
 };
 
-/// Part of the tuft's hair that bends inwards over the face between two spines: of a row what lies beyond it, on the
-/// side where that is less; of a ring the smaller share of the two.
-double inward_share(const Tuft& tuft, const Beside& beside) {
-    double before = 0, all = 0;
-    for (int k = 0; k < static_cast<int>(tuft.spines.size()); ++k) {
-        all += tuft.spines[k].share;
-        if (k <= beside.first) before += tuft.spines[k].share;
-    }
-    if (!has_broad_side(tuft.preset))
-        return std::min(tuft.spines[beside.first].share, tuft.spines[beside.second].share);
-    return std::min(before, all - before);
-}
-
 /// One solve of all spines, with what it needs.
 struct Coupled {
     Recycled<rod::Law> laws;
@@ -180,7 +167,6 @@ struct Coupled {
                 pair.depth.push_back(std::max(l.y + r.y, kThinnest) / length);
             }
             for (const double s : beside.shift) pair.rest_shift.push_back(s / length);
-            pair.curl = inward_share(tuft, beside);
             pair.memory = &beside.memory;
             pairs.push_back(std::move(pair));
         }
@@ -299,11 +285,6 @@ rod::CouplingLaw coupling_of(const Preset& p, double wetness) {
     law.spread = 0.5 * side_stiffness(wetness) * p.transverse_stiffness / p.spines / unit;
     law.shear = kShear * law.contact;
     law.friction = p.hair_friction;
-    if (p.curl_radius > 0) {
-        // The even load that bends a cantilever's end back by the rise L²/2R of its arc.
-        law.curl = 4 * p.length / p.curl_radius;
-        law.curl_range = 0.5 * p.length / p.curl_radius;
-    }
     const double film = 2 * p.surface_tension * 2 * p.radius * std::min(1.0, wetness / kFilled);
     law.film = film / (unit * p.length * p.length);
     if (film > 0) {

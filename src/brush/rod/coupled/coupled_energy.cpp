@@ -44,12 +44,6 @@ PairEnergy pair_energy(const CouplingLaw& law, double touching, double spread, d
         out.force += law.spread * pressed;
         out.stiffness += law.spread;
     }
-    if (law.curl > 0 && g < law.curl_range) {
-        const double y = g / law.curl_range, left = y < 0 ? 1 : 1 - y;
-        out.value -= law.curl * law.curl_range * (y < 0 ? 0.5 - y : 0.5 * left * left);
-        out.force -= law.curl * left;
-        if (y >= 0) out.stiffness -= law.curl / law.curl_range;
-    }
     if (law.film > 0) {
         const double y = g / law.film_range, slope = law.film / law.film_range;
         if (y < 0) {

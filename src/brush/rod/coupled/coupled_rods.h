@@ -12,16 +12,14 @@
 /// Nodes of equal number of two neighbours face each other. With d = x₂ − x₁, t the mean tangent, r ⊥ t the direction
 /// of their row, m = t × r, D = d·r and gaps g = D − D₀, h = D − D₁ the coupling adds per length of hair
 ///
-///     U = f [½ k_n ⟨g₀ − g⟩² − W φ(g/g_b) + ½ k_h ⟨−h⟩² − q g_c χ(g/g_c)] + ψ(u − u_p) + ψ(v − v_p),
-///     g₀ = (3 W / g_b + q) / k_n,   φ(y) = (1 − y)³ on [0, 1], 1 − 3 y below, 0 above,
-///     χ(y) = ½ (1 − y)² on [0, 1], ½ − y below, 0 above.
+///     U = f [½ k_n ⟨g₀ − g⟩² − W φ(g/g_b) + ½ k_h ⟨−h⟩²] + ψ(u − u_p) + ψ(v − v_p),   g₀ = 3 W / (k_n g_b),
+///     φ(y) = (1 − y)³ on [0, 1], 1 − 3 y below, 0 above.
 ///
 /// D₀ is the distance at which the hair of both touches at rest, D₁ the same for hair that is spread. The first term is
 /// the contact of hair with hair: neighbours do not pass through each other. The second is the wet film between two
-/// tufts of hair: W its work of separation (Dupré), g_b the gap at which it breaks. The third is the contact of spread
-/// hair. The fourth is the press q of hair that curls inwards, which ends at the gap g_c at which the hair has its own
-/// curl. First, second and fourth are at equilibrium at g = 0. f falls from 1 to 0 where neighbours have slid past each
-/// other out of the row, as |v| goes from half of their depth to all of it.
+/// tufts of hair: W its work of separation (Dupré), g_b the gap at which it breaks. Both are at equilibrium at g = 0.
+/// The third is the contact of spread hair. f falls from 1 to 0 where neighbours have slid past each other out of the
+/// row, as |v| goes from half of their depth to all of it.
 ///
 /// u = d·t − s₀ and v = d·m are the shifts of the neighbours along the hair and out of their row since the straight
 /// rest. ψ is a spring of stiffness k_s that slips where its force passes μ f k_n ⟨g₀ − g⟩ (Coulomb, lagged): coupled
@@ -46,10 +44,14 @@ struct CouplingLaw {
     double film_range = 1;  ///< g_b > 0, gap at which it has broken
     double shear = 0;       ///< k_s
     double friction = 0;    ///< μ between hair; infinite: it never slides
-    double curl = 0;        ///< q, press of hair that curls inwards; 0: straight hair
-    double curl_range = 1;  ///< g_c > 0, gap at which it ends
 
-    double rest_gap() const { return contact > 0 ? 3 * film / (contact * film_range) + curl / contact : 0; }
+    /// The same where the film is `part` as high.
+    CouplingLaw with_film(double part) const {
+        CouplingLaw out = *this;
+        out.film *= part;
+        return out;
+    }
+    double rest_gap() const { return contact > 0 ? 3 * film / (contact * film_range) : 0; }
 };
 
 /// State of a pair from one solve to the next. [m+1] for m segments that both rods have.
@@ -68,17 +70,11 @@ struct CoupledPair {
     Recycled<double> depth;       ///< [m+1] |v| at which they have slid past each other, or empty: they never do
     Recycled<double> film;        ///< [m+1] W over that of the law, 0–1, or empty: 1
     Recycled<double> rest_shift;  ///< [m] s₀, or empty: 0
-    double curl = 1;              ///< q over that of the law
     PairMemory* memory = nullptr;
     std::span<const double> guess;  ///< [m+1] normal force to start from in place of the memory's, or empty
 
     /// The law between nodes i.
-    CouplingLaw law_at(const CouplingLaw& law, int i) const {
-        CouplingLaw out = law;
-        if (!film.empty()) out.film *= film[i];
-        out.curl *= curl;
-        return out;
-    }
+    CouplingLaw law_at(const CouplingLaw& law, int i) const { return film.empty() ? law : law.with_film(film[i]); }
 };
 
 /// A rod with what it meets, as the arguments of `solve`.
