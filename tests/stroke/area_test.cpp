@@ -105,10 +105,13 @@ TEST(Area, DetailKeepsItsShapeDownToThreeTexels) {
 }
 
 TEST(Area, TwoThatShareAnEdgeShowNoGroundBetweenThem) {
-    // A ground, and two halves of it that meet along a slanting edge.
-    const std::vector<Vec2> edge{{0.0021, -0.011}, {-0.0013, 0.011}};
+    // A ground, and two halves of it that meet along an edge: a slanting one, and upright ones at several places
+    // between cells and texels.
     const double texel = model().texels.texel_size;
+    double slope = 0.0034, offset = 0;
+    std::vector<Vec2> edge;
     const auto halves = [&](bool trapped) {
+        edge = {{0.0004 + offset + 0.5 * slope, -0.011}, {0.0004 + offset - 0.5 * slope, 0.011}};
         FlatArea left = area({{{-0.01, -0.011}, edge[0], edge[1], {-0.01, 0.011}}}, "carbon");
         FlatArea right = area({{edge[0], {0.01, -0.011}, {0.01, 0.011}, edge[1]}}, "cinnabar");
         if (trapped) left.under = {{edge[0], edge[0] + Vec2(0.003, 0), edge[1] + Vec2(0.003, 0), edge[1]}};
@@ -118,9 +121,9 @@ TEST(Area, TwoThatShareAnEdgeShowNoGroundBetweenThem) {
         p.paint(fill_of_area(right));
         double ground = 0, least = 1, beyond = 0;
         const double black = p.materials().ink("carbon").strength(), red = p.materials().ink("cinnabar").strength();
-        for (double y = -0.009; y < 0.009; y += 0.37 * texel)
+        for (double y = -0.009; y < 0.009; y += 1.37 * texel)
             for (double x = -5; x <= 5; x += 0.5) {
-                const double across = 0.0004 + y * 0.0034 / 0.022 + x * texel;
+                const double across = 0.0004 + offset + y * slope / 0.022 + x * texel;
                 const auto amounts = pick(p, {across, y, 0}).amounts;
                 ground = std::max(ground, amounts[0] / p.materials().ink("indigo").strength());
                 least = std::min(least, amounts[1] / black + amounts[2] / red);
@@ -128,12 +131,15 @@ TEST(Area, TwoThatShareAnEdgeShowNoGroundBetweenThem) {
             }
         return std::array{ground, least, beyond};
     };
-    const auto [ground, least, beyond] = halves(true);
-    // Coverage is stored in 1/255, of both areas.
-    EXPECT_LT(ground, 0.01);
-    EXPECT_GT(least, 0.99);
-    EXPECT_EQ(beyond, 0) << "the later area covers what lies under it";
     EXPECT_GT(halves(false)[0], 0.2) << "by coverage alone a quarter of the ground shows: a (1 - a)";
+    for (const double upright : {0.0, 0.2, 0.45, 0.8}) {
+        const auto [ground, least, beyond] = halves(true);
+        // Coverage is stored in 1/255, of both areas.
+        EXPECT_LT(ground, 0.01) << slope << ", " << offset;
+        EXPECT_GT(least, 0.99) << slope << ", " << offset;
+        EXPECT_EQ(beyond, 0) << "the later area covers what lies under it";
+        slope = 0, offset = upright * texel;
+    }
 }
 
 TEST(Area, TheRuleSaysWhatCrossingRingsEnclose) {

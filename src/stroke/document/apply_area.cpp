@@ -69,7 +69,7 @@ class AreaCover {
     AreaCover(const FlatArea& area, const SurfaceLattice& lattice, double width)
         : width_(width), own_(raster_of(area, lattice, 0.5 * width)) {
         if (area.under.empty()) return;
-        under_.emplace(FlatArea{.rings = area.under, .placement = {}, .stops = {}}, 0.5 * width);
+        under_.emplace(FlatArea{.rings = area.under, .placement = {}, .stops = {}}, own_);
     }
 
     double at(const Vec2& p) const {
@@ -109,7 +109,7 @@ void find_cover(TileArea& out, const FlatTexels::Tile& tile, const FlatArea& are
 
 }  // namespace
 
-AreaRaster::AreaRaster(const FlatArea& area, double cell) : cell_(cell) {
+AreaRaster::AreaRaster(const FlatArea& area, double cell, const AreaRaster* same) : cell_(cell) {
     Vec2 low(HUGE_VAL), high(-HUGE_VAL);
     for (const auto& ring : area.rings)
         for (const Vec2& p : ring) low = glm::min(low, p), high = glm::max(high, p);
@@ -118,8 +118,9 @@ AreaRaster::AreaRaster(const FlatArea& area, double cell) : cell_(cell) {
     cell_ = std::max(cell_, std::sqrt(size.x * size.y / double(kMostCells)));
     cell_ = std::max({cell_, size.x / 1e6, size.y / 1e6});
     low_ = low - cell_;
-    width_ = static_cast<int>(std::ceil(size.x / cell_)) + 2;
-    height_ = static_cast<int>(std::ceil(size.y / cell_)) + 2;
+    if (same) low_ = same->low_ + cell_ * glm::floor((low_ - same->low_) / cell_);
+    width_ = static_cast<int>(std::ceil(size.x / cell_)) + (same ? 3 : 2);
+    height_ = static_cast<int>(std::ceil(size.y / cell_)) + (same ? 3 : 2);
     coverage_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 0);
     const std::vector<ScanEdge> edges = scan_edges(area, low_, cell_);
     std::vector<std::size_t> active;

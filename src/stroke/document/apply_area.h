@@ -14,7 +14,9 @@ namespace tuft::stroke {
 class AreaRaster {
   public:
     /// Cells of about `cell` metres over the bounds of the area; larger ones where there would be more than 2²⁶.
-    AreaRaster(const FlatArea& area, double cell);
+    AreaRaster(const FlatArea& area, double cell) : AreaRaster(area, cell, nullptr) {}
+    /// On the cells of another raster: coverages of areas that share an edge then add up to that of both.
+    AreaRaster(const FlatArea& area, const AreaRaster& same) : AreaRaster(area, same.cell_, &same) {}
 
     /// Mean over a square of side `width` metres about a point, from 2 × 2 bilinear samples.
     double mean(const Vec2& point, double width) const;
@@ -22,6 +24,7 @@ class AreaRaster {
     Vec2 high() const { return low_ + cell_ * Vec2(width_, height_); }
 
   private:
+    AreaRaster(const FlatArea& area, double cell, const AreaRaster* same);
     double at(const Vec2& point) const;
 
     Vec2 low_{0};
