@@ -160,6 +160,26 @@ TEST_F(SheetOfFormula, LeavesOutWhatACutPartsFromALargePieceAndSaysHowMuch) {
     for (std::size_t i = 0; i < made.pieces.size(); ++i) EXPECT_EQ(made.pieces[i].number, static_cast<int>(i) + 1);
 }
 
+// Of two areas 15 mm apart, between which the film is cut. The cut goes beside the dot between them, which is a piece
+// of its own, however much paint lies around. Its film, 10 mm wide, reaches no other paint.
+TEST_F(SheetOfFormula, AWholeDotBesideACutStays) {
+    const mesh::TriangleMesh model = test::cylinder_part(kRadius, 2, 0.03, 100, 30);
+    for (const double at : {-1.5, 1.5}) {
+        const auto between = [&](const Vec3& p) {
+            const double x = kRadius * std::atan2(p.y, p.x) / kMm, z = p.z / kMm;
+            return glm::length(Vec2(x - at, z - 15)) < 1.2 || (std::abs(x) > 7.5 && z > 4 && z < 26);
+        };
+        const Sheet made =
+            sheet(model, between, {.bleed = 1 * kMm, .join = 2 * kMm, .page = {0.11, 0.08}, .prints = false});
+        ASSERT_EQ(made.pieces.size(), 3u) << at;
+        EXPECT_EQ(made.left_out.fragments, 0u);
+        double least = 1;
+        for (const Piece& piece : made.pieces) least = std::min(least, piece.paint_area);
+        // Samples of 0.05 mm at the rim of a disc 2.4 mm wide.
+        EXPECT_NEAR(least / (test::kPi * 1.2 * 1.2 * kMm * kMm), 1, 0.05);
+    }
+}
+
 // Dots of 0.5 mm² are specks beside one large area, but not where they are all that is painted.
 TEST_F(SheetOfFormula, LeavesOutSpecksOnlyWhereTheyAreNotMissed) {
     const mesh::TriangleMesh model = test::cylinder_part(kRadius, 2, 0.06, 100, 60);
