@@ -119,6 +119,7 @@ TEST_F(Drawing, EndsBeforeEdgesWhereItIsAsked) {
     paint(file + "--edges end-before --project " + project);
     const Ran again = tuft("replay " + project + " --project " + path("q.tuft"));
     EXPECT_EQ(again.status, 0) << again.err;
+    EXPECT_EQ(again.out.find("replayed 1 area; atlas"), 0u) << again.out;
 }
 
 TEST_F(Drawing, ABandHasAWholeNumberOfCopiesThatMeet) {

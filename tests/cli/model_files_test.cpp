@@ -67,6 +67,8 @@ TEST_F(ModelFiles, AWorkingCopyHasFewTrianglesNearTheModel) {
     // The quadric error is a mean over planes: the greatest distance is some times as large.
     EXPECT_LT(by_distance["distance_mm"].get<double>(), 5 * 0.05);
     EXPECT_EQ(tuft("decimate " + model("vase.ply") + " -o " + path("x.ply")).status, 2) << "how far is not said";
+    const Ran ran = tuft("decimate " + model("torus.ply") + " --unit cm -o " + path("copy.ply") + " --triangles 1000");
+    EXPECT_NE(ran.out.find("paint on it with --unit cm"), std::string::npos) << "its numbers are those of the model";
 }
 
 TEST_F(ModelFiles, AWorkingCopyDoesNotReplaceItsModel) {

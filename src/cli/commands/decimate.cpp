@@ -60,8 +60,9 @@ int run(const Decimate& a) {
     }
     fmt::print("{} of {} triangles; the model's vertices lie within {:.3g} mm of them\n", n, full.n_triangles(),
                distance / kMillimetre);
-    fmt::print("wrote {}: paint on it, then replay its project on the full model with --model {}\n", a.output.string(),
-               a.model.string());
+    const std::string in_unit = fixed || a.unit.empty() ? "" : " with --unit " + a.unit;
+    fmt::print("wrote {}: paint on it{}, then replay its project on the full model with --model {}\n",
+               a.output.string(), in_unit, a.model.string());
     return 0;
 }
 

@@ -273,9 +273,10 @@ void print_painted(const Painted& painted, const stroke::Model& model, const Pai
     const std::string painted_strokes =
         reports.empty() && areas > 0 ? ""
                                      : fmt::format("{}{}", areas > 0 ? " and " : "", counted(reports.size(), "stroke"));
-    fmt::print("painted {}{} ({}, {:.1f} mm3 of ink) in {:.2f} s; atlas {} x {}, {}, texel {:.3f} mm\n", painted_areas,
-               painted_strokes, counted(stamps, "stamp"), ink * ink::kFilmUnit * 1e9, seconds, model.atlas.size,
-               model.atlas.size, counted(model.atlas.n_charts, "chart"), model.atlas.texel_size / kMillimetre);
+    const std::string stamped = reports.empty() && areas > 0 ? "" : counted(stamps, "stamp") + ", ";
+    fmt::print("painted {}{} ({}{:.1f} mm3 of ink) in {:.2f} s; atlas {} x {}, {}, texel {:.3f} mm\n", painted_areas,
+               painted_strokes, stamped, ink * ink::kFilmUnit * 1e9, seconds, model.atlas.size, model.atlas.size,
+               counted(model.atlas.n_charts, "chart"), model.atlas.texel_size / kMillimetre);
     for (const auto& path : {a.output.project, a.output.exported, a.output.preview, a.output.forces})
         if (!path.empty()) fmt::print("wrote {}\n", path.string());
     std::fflush(stdout);

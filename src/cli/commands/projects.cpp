@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "cli/commands/revision.h"
 #include "cli/steps/commands.h"
@@ -144,6 +145,25 @@ stroke::Model replay_model(const Replay& a, OpenProject& project, Console& conso
     return stroke::rescale_model(std::move(project.model), options);
 }
 
+namespace {
+
+void print_replayed(std::span<const stroke::JournalEntry> entries, std::span<const stroke::StrokeReport> reports,
+                    const atlas::Atlas& atlas) {
+    const auto areas = static_cast<std::size_t>(std::ranges::count_if(entries, [](const stroke::JournalEntry& entry) {
+        const stroke::Fill* fill = entry.as<stroke::Fill>();
+        return fill && fill->area;
+    }));
+    const auto missed = std::ranges::count_if(reports, [](const stroke::StrokeReport& r) { return !r.touched(); });
+    std::string what = areas == 0 ? "" : counted(areas, "area");
+    if (!reports.empty() || areas == 0)
+        what +=
+            fmt::format("{}{}, {} of {} miss{} the model", areas == 0 ? "" : " and ", counted(reports.size(), "stroke"),
+                        missed, areas == 0 ? "them" : "the strokes", missed == 1 ? "es" : "");
+    fmt::print("replayed {}; atlas {} x {}\n", what, atlas.size, atlas.size);
+}
+
+}  // namespace
+
 int run(const Replay& a) {
     Outputs outputs{a.out_project, a.exported, a.preview, a.view, {}};
     check_outputs(outputs);
@@ -192,8 +212,7 @@ int run(const Replay& a) {
         if (!a.model.empty()) j["fit"] = to_json(revised, fit);
         print_json(j);
     } else {
-        fmt::print("replayed {}, {} of them miss{} the model; atlas {} x {}\n", counted(reports.size(), "stroke"),
-                   missed, missed == 1 ? "es" : "", model.atlas.size, model.atlas.size);
+        print_replayed(strokes, reports, model.atlas);
         for (const std::filesystem::path& path : {a.out_project, outputs.exported, outputs.preview, a.moved})
             if (!path.empty()) fmt::print("wrote {}\n", path.string());
     }
