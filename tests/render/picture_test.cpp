@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "core/error.h"
 #include "core/hash.h"
+#include "core/random.h"
 #include "core/system/parallel.h"
 #include "render/picture/light_buffer.h"
 #include "render/picture/sampling.h"
@@ -320,6 +322,104 @@ TEST(Picture, TextureIsWhereItsUvsSayAndTheFloorIsDarkUnderTheObject) {
     const Vec3f behind = backdrop(static_cast<float>(foot->x) / 240, static_cast<float>(foot->y) / 180);
     EXPECT_GE(at(0.012 * side), 0);
     EXPECT_LT(at(0.012 * side), 0.75 * 255 * encode_srgb(behind.y));
+}
+
+/// Light of random noise on two planes that meet in a ridge, over a floor and a backdrop.
+LightBuffer noisy_ridge(const Camera& camera) {
+    LightBuffer buffer{.width = camera.width, .height = camera.height, .hits = {}, .light = {}};
+    Random random(7);
+    for (int y = 0; y < buffer.height; ++y)
+        for (int x = 0; x < buffer.width; ++x) {
+            const Vec3f right = glm::normalize(Vec3f(0.4f, -1, 0)), left = glm::normalize(Vec3f(-0.3f, -1, 0));
+            const float at = 1e-3f * static_cast<float>(x - 80);
+            ViewHit hit;
+            hit.kind = y < 3 ? HitKind::backdrop : y > 14 ? HitKind::floor : HitKind::object;
+            hit.normal = hit.kind == HitKind::floor ? Vec3f(0, 0, 1) : x < 80 ? left : right;
+            hit.position = {at, std::abs(at) * (x < 80 ? 0.3f : 0.4f), 1e-3f * static_cast<float>(10 - y)};
+            buffer.hits.push_back(hit);
+            Light light;
+            for (int c = 0; c < 3; ++c) {
+                light.direct[c] = static_cast<float>(0.5 + (x > 30) + 0.2 * random.uniform());
+                light.around[c] = static_cast<float>(0.1 * random.uniform());
+            }
+            buffer.light.push_back(light);
+        }
+    return buffer;
+}
+
+/// The formula of `smooth_light`, term by term.
+std::vector<std::array<double, 6>> smoothed(const LightBuffer& in, const Camera& camera) {
+    const int n = in.width * in.height;
+    const auto luma = [](const std::array<double, 6>& l, int p) {
+        return 0.25 * l[3 * p] + 0.5 * l[3 * p + 1] + 0.25 * l[3 * p + 2];
+    };
+    const auto likeness = [&](int p, int q, double pixels) {
+        const ViewHit &a = in.hits[p], &b = in.hits[q];
+        if (a.kind != b.kind) return 0.0;
+        if (a.kind != HitKind::object) return 1.0;
+        const Vec3 u(a.normal), v(b.normal), d = Vec3(b.position) - Vec3(a.position);
+        const double size = 2 * camera.tan_half_height / camera.height * glm::distance(Vec3(a.position), camera.eye);
+        const double off = std::max(std::abs(glm::dot(u, d)), std::abs(glm::dot(v, d))) / (pixels * size);
+        const double cosine = glm::dot(u, v);
+        return cosine < 0.8 || off > 4 ? 0.0 : std::pow(cosine, 32) * std::exp(-off * off);
+    };
+    const auto for_square = [&](int k, int radius, int step, const auto& visit) {
+        for (int j = -radius; j <= radius; ++j)
+            for (int i = -radius; i <= radius; ++i) {
+                const int x = k % in.width + i * step, y = k / in.width + j * step;
+                if (x >= 0 && y >= 0 && x < in.width && y < in.height) visit(y * in.width + x, i, j);
+            }
+    };
+    std::vector<std::array<double, 6>> light(n);
+    std::vector<std::array<double, 2>> variance(n);
+    for (int k = 0; k < n; ++k)
+        for (int c = 0; c < 3; ++c) light[k][c] = in.light[k].direct[c], light[k][3 + c] = in.light[k].around[c];
+    for (int k = 0; k < n; ++k)
+        for (int p = 0; p < 2; ++p) {
+            double w = 0, sum = 0, squares = 0;
+            for_square(k, 3, 1, [&](int q, int, int) {
+                const double g = likeness(k, q, 3), l = luma(light[q], p);
+                w += g, sum += g * l, squares += g * l * l;
+            });
+            variance[k][p] = std::max(0.0, squares / w - sum / w * (sum / w));
+        }
+    constexpr double kernel[3] = {0.375, 0.25, 0.0625};
+    for (const int step : {1, 2, 4, 8}) {
+        const auto before = light;
+        const auto spread_before = variance;
+        for (int k = 0; k < n; ++k)
+            for (int p = 0; p < 2; ++p) {
+                double total = 0, spread = 0;
+                std::array<double, 3> sum{};
+                for_square(k, 2, step, [&](int q, int i, int j) {
+                    const double gap = std::abs(luma(before[q], p) - luma(before[k], p));
+                    const double w = kernel[std::abs(i)] * kernel[std::abs(j)] *
+                                     (q == k ? 1 : likeness(k, q, 1 + step)) *
+                                     std::exp(-gap / (2.5 * std::sqrt(spread_before[k][p]) + 2e-3));
+                    total += w, spread += w * w * spread_before[q][p];
+                    for (int c = 0; c < 3; ++c) sum[c] += w * before[q][3 * p + c];
+                });
+                for (int c = 0; c < 3; ++c) light[k][3 * p + c] = sum[c] / total;
+                variance[k][p] = spread / (total * total);
+            }
+    }
+    return light;
+}
+
+TEST(LightBuffer, IsSmoothedByItsFormula) {
+    Camera camera;
+    camera.eye = {0, -0.5, 0};
+    camera.width = 131, camera.height = 18;  // two blocks of pixels side by side and a part of one
+    LightBuffer buffer = noisy_ridge(camera);
+    const auto want = smoothed(buffer, camera);
+    smooth_light(buffer, camera);
+    for (std::size_t k = 0; k < want.size(); ++k)
+        for (int c = 0; c < 6; ++c) {
+            if (buffer.hits[k].kind == HitKind::backdrop) continue;
+            const float got = c < 3 ? buffer.light[k].direct[c] : buffer.light[k].around[c - 3];
+            // Variances are differences of squares, off by 1e-6 in floats, which counts where they are small.
+            ASSERT_NEAR(got, want[k][c], 2e-4) << k << " " << c;
+        }
 }
 
 }  // namespace

@@ -158,7 +158,6 @@ LightBuffer fill_light_buffer(const Scene& scene, const LightCache& cache, const
     const std::size_t n = width * static_cast<std::size_t>(buffer.height);
     buffer.hits.resize(n);
     buffer.light.resize(n);
-    std::vector<Vec2f> variance(n, Vec2f{0});
     constexpr int kBand = 32;  // rows between two reports
     for (int top = 0; top < buffer.height; top += kBand) {
         report(options.progress, "light", static_cast<double>(top) / buffer.height);
@@ -178,7 +177,7 @@ LightBuffer fill_light_buffer(const Scene& scene, const LightCache& cache, const
         });
     }
     if (buffer.step > 1) remove_specks(buffer, camera);
-    smooth_light(buffer, variance, camera);
+    smooth_light(buffer, camera);
     return buffer;
 }
 

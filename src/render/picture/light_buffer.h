@@ -80,7 +80,13 @@ LightBuffer fill_light_buffer(const Scene& scene, const LightCache& cache, const
 void remove_specks(LightBuffer& buffer, const Camera& camera);
 
 /// Edge-stopping à-trous smoothing ([Dammertz2010]; variance-guided as in
-/// [Schied2017]) of both parts of the light. `variance`: of the mean of each part, per pixel.
-void smooth_light(LightBuffer& buffer, std::vector<Vec2f>& variance, const Camera& camera);
+/// [Schied2017]) of both parts of the light. With l the luma of a part, σ² its variance over the 7 × 7 pixels of the
+/// same surface, h the kernel (1/16, 1/4, 3/8, 1/4, 1/16) and q over 5 × 5 pixels s = 1, 2, 4, 8 apart, one pass each:
+///
+///     w(p, q) = h h g(p, q) e^(−|l_q − l_p| / (2.5 σ_p + 0.002)),  l'_p = Σ w l_q / Σ w,  σ'²_p = Σ w² σ²_q / (Σ w)²
+///     g = (n_p · n_q)³² e^(−o²),  o = the farther of p and q off the other's tangent plane over 1 + s pixels
+///
+/// g is 0 between floor, object and backdrop, for n_p · n_q < 0.8 and o > 4, and 1 on the floor. e^x is exact to 3e-7.
+void smooth_light(LightBuffer& buffer, const Camera& camera);
 
 }  // namespace tuft::render
