@@ -171,7 +171,7 @@ Vec3 expected_motion(const LawState& s, std::size_t j) {
 }
 
 /// By what a spring of k_max follows the motion of the last period, N.
-double followed(const LawOptions& options, const LawState& s) {
+double following_force(const LawOptions& options, const LawState& s) {
     return options.limits.max_stiffness / options.scale * glm::length(expected_motion(s, 0));
 }
 
@@ -204,13 +204,13 @@ double most_force(const LawOptions& options, const LawState& s, double left, con
     const Vec3 next = expected_motion(s, 1);
     const double kept = left - kReserve * last * std::max(0.0, glm::dot(next, u));
     const double planned = spring_force(tank_stiffness(options), std::max(0.0, kept), path_ahead(options, s, next, u));
-    const double most = std::max(planned, last - followed(options, s) - kFallFree),
+    const double most = std::max(planned, last - following_force(options, s) - kFallFree),
                  ahead = path_ahead(options, s, moved, u);
     return ahead > 0 ? std::min(most, left / ahead) : most;
 }
 
 /// Step 6: `f`, no more than the tank lets out. Takes from `left` J what it may need.
-Vec3 let_out(const LawOptions& options, const LawState& s, const Vec3& moved, const Vec3& f, double& left) {
+Vec3 limit_to_tank(const LawOptions& options, const LawState& s, const Vec3& moved, const Vec3& f, double& left) {
     const double size = glm::length(f);
     if (!(size > 0)) return f;
     const Vec3 u = f / size;
@@ -275,10 +275,12 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     Vec3 f = K * stretch + B * (velocity - s.arm_velocity);
     if (options.restore) s.restored += (T / kRestoreTime) * (in.arm - root);
 
-    // A blow of the ferrule is felt as one; what safety fades must not wait.
-    if (!held.hard && in.pass == 1 && in.trust == 1) f = s.force + limited(f - s.force, followed(options, s) + kStep);
     const double wanted = glm::length(f);
     f = limited(f, std::min(options.limits.max_force, options.most_force)) * in.pass;
+    // A blow of the ferrule is felt as one. What safety fades gets smaller at once, but does not grow in a step.
+    const bool fades = in.pass < 1 || in.trust < 1;
+    if (!held.hard && (!fades || glm::length(f) > glm::length(s.force)))
+        f = s.force + limited(f - s.force, following_force(options, s) + kStep);
 
     const bool touching = in.hair && (in.hair->touching || held.hard || in.hair->force != Vec3{0});
     s.coupled = 0.5 * K * glm::dot(stretch, stretch) + 0.5 * m * glm::dot(velocity, velocity);
@@ -288,10 +290,10 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     fill_tank(s, was_free, in.hair ? gain * in.hair->stored : 0);
     LawOutput out{.root = root, .hard = held.hard};
     double left = energy_left(options, s);
-    const Vec3 let = let_out(options, s, moved, f, left);
+    const Vec3 let = limit_to_tank(options, s, moved, f, left);
     out.limited = let != f;
     f = let;
-    const double kept = wanted > 0 ? glm::length(f) / wanted : in.pass;
+    const double kept = wanted > 0 ? std::min(1.0, glm::length(f) / wanted) : in.pass;
     s.force = f;
     s.sent[s.n_sent++ % s.sent.size()] = f;
     s.moment = in.hair ? limited_moment(kept * (gain * in.hair->moment + held.moment), left, turned) : Vec3{0};

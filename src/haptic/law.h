@@ -25,8 +25,8 @@
 ///    (a proxy [Ruspini1997]); along them acts Coulomb friction. The arm never shows more than K.
 /// 4. Restore, optional: s += (T / 0.15 s) (x − y) takes the softness of the coupling away in the long run.
 /// 5. Clamp to the device and to 7.9 N. A moment is scaled with its force. While only hair touches, f changes by at
-/// most
-///    k_max |Δx̂| + 0.12 N: the damper alone gives 0.3 N in a period to a hand that turns round at 60 m/s².
+///    most k_max |Δx̂| + 0.12 N, but for a fade, in which it may get smaller at once: the damper alone gives 0.3 N in a
+///    period to a hand that turns round at 60 m/s².
 /// 6. Tank (a passivity observer and controller [Hannaford2002]): e −= f₋ · Δx′ + ½ count |Δf₋|, e −= G τ · Δθ. x′ is
 ///    the position measured, but stays while that flickers within 1.8 counts. f₋ is the mean of the forces that acted
 ///    meanwhile, sent as long ago as the delay says (of two periods the worse). The true position is within half a

@@ -13,6 +13,7 @@
 #include "io/project/packing.h"
 #include "sample_project.h"
 #include "stroke/journal/entry/entry_json.h"
+#include "stroke/journal/entry/fill.h"
 #include "stroke/journal/entry/parts.h"
 
 namespace tuft::io {
@@ -207,6 +208,23 @@ TEST(Project, RollsComeBackToTheBitAndRaiseTheFormat) {
     Project settings = Project::create(folder / "b.tuft", sample_model());
     settings.append(follows);
     EXPECT_EQ(settings.format(), kRolledFormat);
+}
+
+TEST(Project, WhatAnAreaReachesUnderComesBackAndRaisesTheFormat) {
+    const Folder folder("project_under");
+    stroke::FlatArea area{.rings = {{{0, 0}, {0.01, 0}, {0.01, 0.01}}}, .placement = {}, .stops = {{.ink = "carbon"}}};
+    Project project = Project::create(folder / "a.tuft", sample_model());
+    stroke::JournalEntry plain{stroke::fill_of_area(area)};
+    plain.id = 1;
+    project.append(plain);
+    EXPECT_LT(project.format(), kUnderFormat) << "older programs read what they understand";
+    area.under = {{{0.01, 0}, {0.012, 0}, {0.01, 0.01}}};
+    stroke::JournalEntry reaching{stroke::fill_of_area(area)};
+    reaching.id = 2;
+    project.append(reaching);
+    EXPECT_EQ(project.format(), kUnderFormat);
+    const auto back = Project::open(folder / "a.tuft", {.access = Access::read}).strokes();
+    EXPECT_EQ(back[1].as<stroke::Fill>()->area->under, area.under);
 }
 
 TEST(Project, StoredTexelsAreForgottenWhenAStrokeUnderThemChanges) {

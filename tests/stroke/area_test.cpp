@@ -132,13 +132,13 @@ TEST(Area, TwoThatShareAnEdgeShowNoGroundBetweenThem) {
         return std::array{ground, least, beyond};
     };
     EXPECT_GT(halves(false)[0], 0.2) << "by coverage alone a quarter of the ground shows: a (1 - a)";
-    for (const double upright : {0.0, 0.2, 0.45, 0.8}) {
+    for (const auto& [sloping, part] : {std::pair{0.0034, 0.0}, {0.0, 0.0}, {0.0, 0.2}, {0.0, 0.45}, {0.0, 0.8}}) {
+        slope = sloping, offset = part * texel;
         const auto [ground, least, beyond] = halves(true);
         // Coverage is stored in 1/255, of both areas.
         EXPECT_LT(ground, 0.01) << slope << ", " << offset;
         EXPECT_GT(least, 0.99) << slope << ", " << offset;
         EXPECT_EQ(beyond, 0) << "the later area covers what lies under it";
-        slope = 0, offset = upright * texel;
     }
 }
 
@@ -250,6 +250,7 @@ TEST(Area, IsTheSameForAnyNumberOfThreadsAndFromItsText) {
     a.reading.part = "number";
     a.reading.centre = {0.001, 0.002};
     a.lines = {{{-0.01, 0}, {0.003, 0.0001}, {0.0097, 0}}, {{0, 0.001}}};
+    a.under = {box(0.0097, -0.0052, 0.0117, 0.0048)};
     JournalEntry entry{fill_of_area(a)};
     std::uint64_t hashes[3];
     for (int i = 0; i < 3; ++i) {
@@ -294,6 +295,7 @@ TEST(Copies, MeetTheMirrorImageOfEveryPoint) {
     // An L: no mirror image of itself.
     const Ring letter{{0.004, -0.01}, {0.007, -0.01}, {0.007, 0.007}, {0.014, 0.007}, {0.014, 0.01}, {0.004, 0.01}};
     FlatArea a = area({letter});
+    a.under = a.rings;
     a.placed = true;
     a.placement.origin = {0.002, 0, 0};
     const std::vector<JournalEntry> one{JournalEntry(fill_of_area(a))};
@@ -309,6 +311,7 @@ TEST(Copies, MeetTheMirrorImageOfEveryPoint) {
     for (const Vec2 q : {Vec2(0.0075, 0.005), Vec2(0.008, -0.005), Vec2(0.014, -0.0085), Vec2(0.011, 0.005)})
         EXPECT_NEAR(at(p, q.x, q.y), at(p, -q.x, q.y), 1e-6);
     const FlatArea& copy = *copies[0].get<Fill>().area;
+    EXPECT_EQ(copy.under, copy.rings) << "what it reaches under goes with it";
     EXPECT_GT(glm::dot(glm::cross(copy.placement.down, copy.placement.right), Vec3(0, 0, 1)), 0) << "right-handed";
     // Twice is the original.
     const JournalEntry back = symmetric_copies(copies, across, CopyReading::mirrored, {})[0];
@@ -318,12 +321,14 @@ TEST(Copies, MeetTheMirrorImageOfEveryPoint) {
 TEST(Copies, KeepMarkedPartsReadableWhereTheMirrorPutsThem) {
     const Ring letter{{0.004, -0.01}, {0.007, -0.01}, {0.007, 0.007}, {0.014, 0.007}, {0.014, 0.01}, {0.004, 0.01}};
     FlatArea a = area({letter});
+    a.under = a.rings;
     a.placed = true;
     a.reading.part = "number";
     a.reading.centre = {0.009, 0};
     const JournalEntry copy = symmetric_copies(std::vector<JournalEntry>{JournalEntry(fill_of_area(a))},
                                                {.mirror_x = true}, CopyReading::upright_parts, {})[0];
     const FlatArea& b = *copy.get<Fill>().area;
+    EXPECT_EQ(b.under, b.rings);
     for (std::size_t i = 0; i < letter.size(); ++i) {
         EXPECT_NEAR(b.rings[0][i].x, letter[i].x - 2 * 0.009, 1e-12);
         EXPECT_NEAR(b.rings[0][i].y, letter[i].y, 1e-12);

@@ -10,6 +10,7 @@
 #include "core/text/units.h"
 #include "io/model/read_model.h"
 #include "mesh/query/surface_query.h"
+#include "mesh/repair/inspect.h"
 
 namespace tuft::cli {
 namespace {
@@ -60,7 +61,11 @@ int run(const Decimate& a) {
     }
     fmt::print("{} of {} triangles; the model's vertices lie within {:.3g} mm of them\n", n, full.n_triangles(),
                distance / kMillimetre);
-    const std::string in_unit = fixed || a.unit.empty() ? "" : " with --unit " + a.unit;
+    Box numbers;
+    for (const Vec3& p : file.points) numbers.add(p);
+    const std::string written = fixed ? "mm" : frame.unit;
+    const bool is_guessed = mesh::guess_unit(numbers).unit == written && (fixed || a.unit.empty());
+    const std::string in_unit = is_guessed ? "" : " with --unit " + written;
     fmt::print("wrote {}: paint on it{}, then replay its project on the full model with --model {}\n",
                a.output.string(), in_unit, a.model.string());
     return 0;

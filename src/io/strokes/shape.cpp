@@ -176,7 +176,7 @@ Shape Shape::combined(const Shape& other, Operation operation) const {
     for (const Ring& ring : all) n += ring.size();
     Shape shape;
     const Grid grid(all);
-    if (n > kMostPoints || grid.scale == 0) return shape;
+    if (n > kMostPoints || grid.scale == 0 || crosses_more_than(kMostPoints, all)) return shape;
     clip::Clipper clipper;
     clipper.AddPaths(grid.paths(rings_), clip::ptSubject, true);
     clipper.AddPaths(grid.paths(other.rings_), clip::ptClip, true);
@@ -195,22 +195,14 @@ Shape Shape::without(const Shape& other) const {
 }
 
 Shape Shape::grown(double d, double tolerance) const {
-    // The grid has no points beyond its extent.
-    std::vector<Ring> all = rings_;
-    for (const Ring& ring : rings_)
-        for (const Vec2& p : ring) all.push_back({p - d, p + d});
-    Shape shape;
-    const Grid grid(all);
-    if (empty() || grid.scale == 0) return shape;
-    clip::ClipperOffset offset(2, std::max(0.25, tolerance * grid.scale));
-    offset.AddPaths(grid.paths(rings_), clip::jtRound, clip::etClosedPolygon);
-    clip::Paths out;
-    offset.Execute(out, d * grid.scale);
-    shape.rings_ = grid.rings(out);
-    return shape;
+    return moved_outline(d, 1, tolerance);
 }
 
 Shape Shape::inset(double d, double tolerance) const {
+    return moved_outline(d, -1, tolerance);
+}
+
+Shape Shape::moved_outline(double d, int outward, double tolerance) const {
     // A jagged outline crosses itself at d over the distance of its points: small steps first, each
     // of which leaves fewer points to the next, twice as long.
     const double first = 2 * tolerance;
@@ -220,11 +212,15 @@ Shape Shape::inset(double d, double tolerance) const {
     double done = 0;
     for (int i = 0; i < steps && !shape.empty(); ++i) {
         const double next = i + 1 < steps ? first * std::ldexp(1.0, i) : d;
-        const Grid grid(shape.rings_);
+        std::vector<Ring> extent = shape.rings_;  // the grid has no points beyond it
+        if (outward > 0)
+            for (const Ring& ring : shape.rings_)
+                for (const Vec2& p : ring) extent.push_back({p - (next - done), p + (next - done)});
+        const Grid grid(extent);
         clip::ClipperOffset offset(2, std::max(0.25, part * grid.scale));
         offset.AddPaths(grid.paths(shape.rings_), clip::jtRound, clip::etClosedPolygon);
         clip::Paths out;
-        offset.Execute(out, -(next - done) * grid.scale);
+        offset.Execute(out, outward * (next - done) * grid.scale);
         shape.rings_ = grid.rings(out);
         shape = shape.simplified(part);
         done = next;

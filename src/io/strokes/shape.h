@@ -47,6 +47,8 @@ class Shape {
 
   private:
     Shape() = default;
+    /// Moves the outline by `d` metres outwards (1) or inwards (-1).
+    Shape moved_outline(double d, int outward, double tolerance) const;
     template <class Operation>
     Shape combined(const Shape& other, Operation operation) const;
 

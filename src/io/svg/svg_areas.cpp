@@ -139,7 +139,7 @@ class AreaMaker {
         for (const std::vector<PaintedPart>& parts : all)
             for (const PaintedPart& part : parts) add(part);
         frame();
-        run_under();
+        extend_under();
         return std::move(out_);
     }
 
@@ -335,7 +335,7 @@ class AreaMaker {
         return *std::get<stroke::Fill>(r.before.front()).area;
     }
 
-    void run_under() {
+    void extend_under() {
         std::vector<stroke::FlatArea*> areas;
         for (stroke::RecordedStroke& recorded : out_) areas.push_back(&area_of(recorded));
         set_under(areas);

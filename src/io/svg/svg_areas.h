@@ -29,9 +29,9 @@ std::vector<Ring> svg_stroke_outline(const SvgShape& shape, double unit, double 
 /// named by their colours (`#rrggbb`). A colour within `kSameInk` of an earlier one takes its ink. Gradients get stops
 /// at most 8 ΔE2000 apart, colours between them mixed in sRGB (SVG 1.1, 13.2.4). Clip paths and masks cut the areas; a
 /// mask with a gradient grades the film. What lies beside the page is cut off. A white shape over the whole page below
-/// all others is the background and is left out. Areas
-/// reach under later ones at the edges that they share (svg_seams.h). Adds to `scene.losses` what is not painted.
-/// Throws `Error` for too many points or pieces.
+/// all others is the background and is left out. Areas reach under later ones
+/// at the edges that they share (svg_seams.h). Adds to `scene.losses` what is not painted. Throws `Error` for too many
+/// points or pieces.
 std::vector<stroke::RecordedStroke> svg_areas(SvgScene& scene, const std::string& source, double tolerance);
 
 }  // namespace tuft::io

@@ -115,12 +115,19 @@ AreaRaster::AreaRaster(const FlatArea& area, double cell, const AreaRaster* same
         for (const Vec2& p : ring) low = glm::min(low, p), high = glm::max(high, p);
     if (!(low.x < high.x && low.y < high.y)) return;
     const Vec2 size = high - low;
-    cell_ = std::max(cell_, std::sqrt(size.x * size.y / double(kMostCells)));
-    cell_ = std::max({cell_, size.x / 1e6, size.y / 1e6});
-    low_ = low - cell_;
-    if (same) low_ = same->low_ + cell_ * glm::floor((low_ - same->low_) / cell_);
-    width_ = static_cast<int>(std::ceil(size.x / cell_)) + (same ? 3 : 2);
-    height_ = static_cast<int>(std::ceil(size.y / cell_)) + (same ? 3 : 2);
+    if (same) {
+        constexpr int kAround = 8;  // cells: it is read up to 5 beside the other
+        cell_ = same->cell_;
+        low_ = same->low_ - kAround * cell_;
+        width_ = same->width_ + 2 * kAround;
+        height_ = same->height_ + 2 * kAround;
+    } else {
+        cell_ = std::max(cell_, std::sqrt(size.x * size.y / double(kMostCells)));
+        cell_ = std::max({cell_, size.x / 1e6, size.y / 1e6});
+        low_ = low - cell_;
+        width_ = static_cast<int>(std::ceil(size.x / cell_)) + 2;
+        height_ = static_cast<int>(std::ceil(size.y / cell_)) + 2;
+    }
     coverage_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 0);
     const std::vector<ScanEdge> edges = scan_edges(area, low_, cell_);
     std::vector<std::size_t> active;

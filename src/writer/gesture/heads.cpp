@@ -70,9 +70,10 @@ std::optional<std::vector<Vec2>> with_head(const Glyph& glyph, std::size_t strok
         out.push_back(u * u * start + 2 * u * t * bend + t * t * end);
     }
     std::size_t next = 1;
-    while (next + 1 < line.points.size() &&
+    while (next <= main.last &&
            (line.along[next] < 0.5 * kAxisFrom || glm::dot(line.points[next] - out.back(), axis) < StrokeLine::kApart))
         ++next;
+    if (next > main.last) return std::nullopt;  // too tight a bow for a head
     out.insert(out.end(), line.points.begin() + static_cast<std::ptrdiff_t>(next), line.points.end());
     return out;
 }
