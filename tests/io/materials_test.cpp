@@ -177,7 +177,7 @@ const std::string kThreeTiles =
 TEST(Materials, ANumberInAPicturesNameStandsForItsTile) {
     const Folder folder("udim");
     put(folder / "m.obj", kThreeTiles);
-    put(folder / "m.mtl", "newmtl one\nmap_Kd -clamp on p.<udim>.png\n");
+    put(folder / "m.mtl", "newmtl one\nmap_Kd -clamp on p.<udim>.png\nmap_Bump n.<UDIM>.png\n");
     put(folder / "p.1002.png", png_text());
     const Image8 green{.width = 1, .height = 1, .channels = 3, .pixels = {0, 255, 0}};
     const std::vector<unsigned char> png = png_bytes(view_of(green));
@@ -189,8 +189,11 @@ TEST(Materials, ANumberInAPicturesNameStandsForItsTile) {
     EXPECT_EQ(tiles[0].udim, 1002u);
     EXPECT_EQ(tiles[0].picture->rgb, four_colours().pixels);
     EXPECT_EQ(tiles[1].udim, 1011u);
-    ASSERT_EQ(soup.warnings.size(), 1u);
-    EXPECT_NE(soup.warnings[0].text().find("p.1020.png"), std::string::npos) << soup.warnings[0].text();
+    std::string said;
+    for (const Message& warning : soup.warnings) said += warning.text() + "\n";
+    EXPECT_EQ(soup.warnings.size(), 2u) << said;
+    EXPECT_NE(said.find("p.1020.png"), std::string::npos) << said;
+    EXPECT_NE(said.find("n.<UDIM>.png"), std::string::npos) << said;
 
     const stroke::Model model = model_of(soup, 64);
     const auto colour = [&](const Vec3& p) {

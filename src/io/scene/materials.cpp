@@ -87,6 +87,13 @@ class Pictures {
         return it->second;
     }
 
+    /// Says that pictures on tiles of a map other than that of colours are not read.
+    void leave_out_tiles(const std::string& name) {
+        if (read_.try_emplace(name).second)
+            warnings_.push_back(
+                Message("the pictures {} are not read: only those of colours may lie on tiles", mesh::in_quotes(name)));
+    }
+
   private:
     std::shared_ptr<const mesh::Picture> read(const fs::path& file, std::size_t most_pixels) {
         try {
@@ -194,8 +201,14 @@ void add_materials(mesh::PolygonSoup& soup, const std::map<std::string, MtlEntry
     SceneBuilder builder;
     std::map<const mesh::Picture*, int> textures;
     std::vector<const mesh::Picture*> picture_of;
+    const auto is_of_colours = [&](const std::string& name) {
+        return std::ranges::any_of(entries, [&](const auto& entry) { return entry.second.picture == name; });
+    };
     const auto texture_of = [&](const std::string& name) {
-        if (place_of_number(name) != name.npos) return -1;
+        if (place_of_number(name) != name.npos) {
+            if (!is_of_colours(name)) pictures.leave_out_tiles(name);
+            return -1;
+        }
         const auto picture = pictures.get(name);
         if (!picture) return -1;
         const auto [it, is_new] = textures.try_emplace(picture.get(), -1);
