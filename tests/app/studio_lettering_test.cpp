@@ -109,7 +109,7 @@ TEST_F(StudioLettering, ALongTextIsPlannedBesideTheWindowAndCanBeStopped) {
 }
 
 TEST_F(StudioLettering, ThePanelFitsTheSmallestWindowItIsMadeForInBothLanguages) {
-    std::string script = written(kYong) + "set scale 1.5\nwait 0.3\nclick mm\n";
+    std::string script = written(kYong) + "set scale 1.5\nwait 0.3\nclick \"In mm\"\n";
     for (const char* language : {"english", "chinese"})
         script += "set language " + std::string(language) + "\nwait 0.3\nplaces\nreport\n";
     const Ran ran = studio(script, kWindow);
