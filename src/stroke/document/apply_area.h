@@ -37,10 +37,10 @@ class AreaRaster {
 AreaRaster raster_of(const FlatArea& area, const SurfaceLattice& lattice, double cell);
 
 /// Puts the area of `fill` onto the texels that it covers. With c the coverage of a texel, α the opacity there and w
-/// the film of the stop, α c of all ink on the texel is taken away and c w film units of the stop's ink are laid.
-/// Texels within one of the area's also have c
-/// from `FlatArea::under`. Between stops α, w and amounts of pigments are linear. `mixes`: one for each stop, by plane
-/// of the canvas; `films`: theirs. `FillResult::met` also counts texels that the mask covers.
+/// the film of the stop, α c of all ink on the texel is taken away and c w film units of the stop's ink are laid. c of
+/// a texel beside one that the area covers includes `FlatArea::under`. Between stops α, w and amounts of pigments are
+/// linear. `mixes`: one for each stop, by plane of the canvas; `films`: theirs. `FillResult::met` also counts texels
+/// that the mask covers.
 FillResult apply_area(const Fill& fill, const PaintTarget& target, const FlatTexels& texels,
                       std::span<const ink::Mix> mixes, std::span<const double> films);
 
