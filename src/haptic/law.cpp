@@ -36,14 +36,14 @@ Vec3 limited(const Vec3& v, double most) {
 }
 
 /// Step 2.
-Vec3 fade(const LawOptions& options, LawState& s, const Vec3& g, double moved) {
-    const Vec3 jump = g - s.hair_force;
-    const double size = glm::length(jump), old = glm::length(s.offset);
+Vec3 faded(const LawOptions& options, LawState& s, const Vec3& g, double moved) {
+    const Vec3 jump = g - s.fade.force;
+    const double size = glm::length(jump), old = glm::length(s.fade.offset);
     const double allowed = std::min(options.limits.max_stiffness / options.scale, kFadeStiffness) * moved + kFadeFree;
-    s.offset = old > kFadeRate ? s.offset * (1 - kFadeRate / old) : Vec3{0};
-    if (size > allowed) s.offset -= jump * (1 - allowed / size);
-    s.hair_force = g;
-    return g + s.offset;
+    s.fade.offset = old > kFadeRate ? s.fade.offset * (1 - kFadeRate / old) : Vec3{0};
+    if (size > allowed) s.fade.offset -= jump * (1 - allowed / size);
+    s.fade.force = g;
+    return g + s.fade.offset;
 }
 
 /// Keeps root and velocity to the free side of all bounds. Returns the moment of what holds them, about the root.
@@ -83,8 +83,8 @@ Held hold_to_bounds(const LawOptions& options, const HairAnswer& hair, Vec3& roo
 }
 
 /// The force that was sent i periods ago, from 1 on.
-const Vec3& sent(const LawState& s, std::size_t i) {
-    return s.sent[(s.n_sent + s.sent.size() - i) % s.sent.size()];
+const Vec3& sent_before(const LawState& s, std::size_t i) {
+    return s.sent.ring[(s.sent.n + s.sent.ring.size() - i) % s.sent.ring.size()];
 }
 
 /// The force that acted since x′ moved, N: of those with each of two delays, which are not known to a period, the one
@@ -95,11 +95,11 @@ struct Acted {
 };
 
 Acted acted_over(const LawState& s, const Vec3& moved) {
-    const double n = static_cast<double>(std::max<std::size_t>(1, s.n_acted));
-    Acted acted{s.acted[0] / n};
+    const double n = static_cast<double>(std::max<std::size_t>(1, s.tank.n_acted));
+    Acted acted{s.tank.acted[0] / n};
     acted.taken = glm::dot(acted.mean, moved);
-    if (s.delayed == 0) return acted;
-    const Vec3 later = s.acted[1] / n;
+    if (s.sent.delay == 0) return acted;
+    const Vec3 later = s.tank.acted[1] / n;
     if (glm::dot(later, moved) > acted.taken) acted = {later, glm::dot(later, moved)};
     return acted;
 }
@@ -107,41 +107,41 @@ Acted acted_over(const LawState& s, const Vec3& moved) {
 /// Step 6 before the force of this period: what the last ones have given.
 void settle_tank(const LawOptions& options, LawState& s, const LawInput& in) {
     const double count = options.limits.count * options.scale;
-    s.acted[0] += sent(s, s.delayed + 1);
-    s.acted[1] += sent(s, s.delayed + 2);
-    ++s.n_acted;
-    if (const Vec3 moved = in.arm - s.played; glm::length(moved) > kFlicker * count) {
+    s.tank.acted[0] += sent_before(s, s.sent.delay + 1);
+    s.tank.acted[1] += sent_before(s, s.sent.delay + 2);
+    ++s.tank.n_acted;
+    if (const Vec3 moved = in.arm - s.tank.played; glm::length(moved) > kFlicker * count) {
         const Acted acted = acted_over(s, moved);
         // The true position is within half a count: by Abel's sum its work differs by that times the change of force.
         // What counts stir up in the damper's force goes against their error and takes no energy: it is smoothed out.
-        const Vec3 change = kCountedShare * (acted.mean - s.counted_force);
-        s.tank -= acted.taken + kCountError * count * glm::length(change);
-        s.counted_force += change;
-        s.landed += glm::length(moved);
-        s.played = in.arm;
-        s.acted = {};
-        s.n_acted = 0;
+        const Vec3 change = kCountedShare * (acted.mean - s.tank.counted_force);
+        s.tank.energy -= acted.taken + kCountError * count * glm::length(change);
+        s.tank.counted_force += change;
+        s.tank.landed += glm::length(moved);
+        s.tank.played = in.arm;
+        s.tank.acted = {};
+        s.tank.n_acted = 0;
     }
-    s.tank -= glm::dot(s.moment, turn_between(s.rotation, in.rotation));
+    s.tank.energy -= glm::dot(s.moment, turn_between(s.arm.rotation, in.rotation));
 }
 
 /// Step 6: what the tank holds at the beginning of a contact, and at most in one, where hair has stored `stored` J.
 void fill_tank(LawState& s, bool was_free, double stored) {
     if (s.free) {
         // A spring that the fade drew out is no income.
-        s.tank = std::clamp(s.tank, kTankKeeps, kTankKeeps + s.coupled);
-        s.lent = 0;
+        s.tank.energy = std::clamp(s.tank.energy, kTankKeeps, kTankKeeps + s.coupled);
+        s.tank.lent = 0;
         return;
     }
     if (was_free) {
-        s.tank = s.coupled;
-        s.landed = 0;
+        s.tank.energy = s.coupled;
+        s.tank.landed = 0;
     }
     // What the hair lost is not kept for later, but for e_0; hair that has taken a set may have less than none.
-    s.tank = std::min(s.tank, kTankKeeps + std::max(0.0, stored) + s.coupled);
-    if (const double lends = std::min(kLeast - s.tank, kMostLent - s.lent); lends > 0) {
-        s.tank += lends;
-        s.lent += lends;
+    s.tank.energy = std::min(s.tank.energy, kTankKeeps + std::max(0.0, stored) + s.coupled);
+    if (const double lends = std::min(kLeast - s.tank.energy, kMostLent - s.tank.lent); lends > 0) {
+        s.tank.energy += lends;
+        s.tank.lent += lends;
     }
 }
 
@@ -152,14 +152,14 @@ double tank_stiffness(const LawOptions& options) {
 
 /// a of a hand at rest, m: the path that it can make while a force acts.
 double path_from_rest(const LawOptions& options, const LawState& s) {
-    return kMostAcceleration * T * T * static_cast<double>(1 + s.delayed) + options.limits.count * options.scale;
+    return kMostAcceleration * T * T * static_cast<double>(1 + s.sent.delay) + options.limits.count * options.scale;
 }
 
 /// w, J. A spring of K that is pressed by x has brought in ½ K x², less ½ count K x for counts, and needs K x a: it
 /// lacks ½ K b² at most, at x = b, and nothing from x = 2 b on.
 double landing_loan(const LawOptions& options, const LawState& s) {
     const double b = path_from_rest(options, s) + kCountError * options.limits.count * options.scale;
-    return 0.5 * coupling_of(options) * b * b * std::clamp(2 - 0.5 * s.landed / b, 0.0, 1.0);
+    return 0.5 * coupling_of(options) * b * b * std::clamp(2 - 0.5 * s.tank.landed / b, 0.0, 1.0);
 }
 
 /// Δx̂: the motion of the arm in the j-th period from the last one on, m. Two low passes in a row of τ = 4 ms lag by τ a
@@ -167,7 +167,7 @@ double landing_loan(const LawOptions& options, const LawState& s) {
 /// count in the next period, by a whole one in the 13th.
 Vec3 expected_motion(const LawState& s, std::size_t j) {
     const double ahead = 1 + static_cast<double>(j) * std::expm1(T / kVelocityTime);
-    return T * (s.arm_velocity + ahead * (s.arm_velocity - s.arm_velocity_before));
+    return T * (s.arm.velocity + ahead * (s.arm.velocity - s.arm.velocity_before));
 }
 
 /// By what a spring of k_max follows the motion of the last period, N.
@@ -178,9 +178,10 @@ double following_force(const LawOptions& options, const LawState& s) {
 /// e′, J.
 double energy_left(const LawOptions& options, const LawState& s) {
     double pending = 0;  // what forces on their way will take, by the longer of two delays
-    const std::size_t n = s.delayed > 0 ? s.delayed + 1 : 0;
-    for (std::size_t i = 1; i <= n; ++i) pending += std::max(0.0, glm::dot(sent(s, i), expected_motion(s, n + 1 - i)));
-    return std::max(0.0, s.tank + landing_loan(options, s) - pending);
+    const std::size_t n = s.sent.delay > 0 ? s.sent.delay + 1 : 0;
+    for (std::size_t i = 1; i <= n; ++i)
+        pending += std::max(0.0, glm::dot(sent_before(s, i), expected_motion(s, n + 1 - i)));
+    return std::max(0.0, s.tank.energy + landing_loan(options, s) - pending);
 }
 
 /// a: the path along `u` that the hand can make while a force acts, m, where it makes `moved` in a period.
@@ -244,36 +245,36 @@ Vec3 turn_between(const Quat& before, const Quat& now) {
 void restart_law(LawState& state, const Vec3& arm, const Quat& rotation) {
     state = {};
     state.started = true;
-    state.arm = state.root = state.played = arm;
-    state.rotation = rotation;
-    state.tank = kTankKeeps;
+    state.arm.position = state.root.position = state.tank.played = arm;
+    state.arm.rotation = rotation;
+    state.tank.energy = kTankKeeps;
 }
 
 LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     if (!s.started) restart_law(s, in.arm, in.rotation);
     const double K = coupling_of(options), B = 2 * std::sqrt(K * kRootMass), m = kRootMass;
-    const Vec3 moved = in.arm - s.arm, turned = turn_between(s.rotation, in.rotation);
-    s.delayed = static_cast<std::size_t>(std::clamp(std::ceil(options.delay / T - 1e-9), 0.0, kMostDelayed));
+    const Vec3 moved = in.arm - s.arm.position, turned = turn_between(s.arm.rotation, in.rotation);
+    s.sent.delay = static_cast<std::size_t>(std::clamp(std::ceil(options.delay / T - 1e-9), 0.0, kMostDelayed));
     settle_tank(options, s, in);
     const double passed = 1 - std::exp(-T / kVelocityTime);
-    s.arm_velocity += (moved / T - s.arm_velocity) * passed;
-    s.arm_velocity_before += (s.arm_velocity - s.arm_velocity_before) * passed;
-    s.arm = in.arm;
-    s.rotation = in.rotation;
+    s.arm.velocity += (moved / T - s.arm.velocity) * passed;
+    s.arm.velocity_before += (s.arm.velocity - s.arm.velocity_before) * passed;
+    s.arm.position = in.arm;
+    s.arm.rotation = in.rotation;
 
     const double gain = options.gain * in.trust;
     const Vec3 hair = in.hair ? gain * in.hair->force : Vec3{0};
-    const Vec3 g = fade(options, s, hair, glm::length(moved));
-    const Vec3 pull = K * (in.arm + s.restored - s.root) + B * s.arm_velocity + g;
-    Vec3 velocity = (m * s.root_velocity + T * pull) / (m + T * (K * T + B));
-    Vec3 root = s.root + T * velocity;
+    const Vec3 g = faded(options, s, hair, glm::length(moved));
+    const Vec3 pull = K * (in.arm + s.root.restored - s.root.position) + B * s.arm.velocity + g;
+    Vec3 velocity = (m * s.root.velocity + T * pull) / (m + T * (K * T + B));
+    Vec3 root = s.root.position + T * velocity;
     Held held;
     if (in.hair) held = hold_to_bounds(options, *in.hair, root, velocity);
-    s.root = root;
-    s.root_velocity = velocity;
-    const Vec3 stretch = root - in.arm - s.restored;
-    Vec3 f = K * stretch + B * (velocity - s.arm_velocity);
-    if (options.restore) s.restored += (T / kRestoreTime) * (in.arm - root);
+    s.root.position = root;
+    s.root.velocity = velocity;
+    const Vec3 stretch = root - in.arm - s.root.restored;
+    Vec3 f = K * stretch + B * (velocity - s.arm.velocity);
+    if (options.restore) s.root.restored += (T / kRestoreTime) * (in.arm - root);
 
     const double wanted = glm::length(f);
     f = limited(f, std::min(options.limits.max_force, options.most_force)) * in.pass;
@@ -285,8 +286,8 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     const bool touching = in.hair && (in.hair->touching || held.hard || in.hair->force != Vec3{0});
     s.coupled = 0.5 * K * glm::dot(stretch, stretch) + 0.5 * m * glm::dot(velocity, velocity);
     const bool was_free = s.free;
-    s.free = !touching && glm::length(s.offset) < kFree;
-    if (s.free) s.restored *= 1 - T / kRestoreTime;
+    s.free = !touching && glm::length(s.fade.offset) < kFree;
+    if (s.free) s.root.restored *= 1 - T / kRestoreTime;
     fill_tank(s, was_free, in.hair ? gain * in.hair->stored : 0);
     LawOutput out{.root = root, .hard = held.hard};
     double left = energy_left(options, s);
@@ -295,7 +296,7 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     f = let;
     const double kept = wanted > 0 ? std::min(1.0, glm::length(f) / wanted) : in.pass;
     s.force = f;
-    s.sent[s.n_sent++ % s.sent.size()] = f;
+    s.sent.ring[s.sent.n++ % s.sent.ring.size()] = f;
     s.moment = in.hair ? limited_moment(kept * (gain * in.hair->moment + held.moment), left, turned) : Vec3{0};
     out.force = f;
     if (options.limits.max_torque > 0) out.torque = limited(s.moment, options.limits.max_torque);

@@ -63,32 +63,57 @@ struct LawOptions {
     double most_force = kForceLimit;  ///< N
 };
 
-/// What the law remembers from period to period.
-struct LawState {
-    bool started = false;
-    Vec3 arm{0};                  ///< x of the period before, m
-    Quat rotation{1, 0, 0, 0};    ///< q of the period before
-    Vec3 arm_velocity{0};         ///< v_x, m/s, low-passed
-    Vec3 arm_velocity_before{0};  ///< m/s, v_x low-passed once more: 4 ms behind it
-    Vec3 root{0};                 ///< y, m
-    Vec3 root_velocity{0};        ///< v, m/s
-    Vec3 restored{0};             ///< s, m
-    Vec3 hair_force{0};           ///< g before the fade, N
-    Vec3 offset{0};               ///< o, N
+/// The arm in the period before.
+struct ArmMotion {
+    Vec3 position{0};           ///< x, m
+    Quat rotation{1, 0, 0, 0};  ///< q
+    Vec3 velocity{0};           ///< v_x, m/s, low-passed
+    Vec3 velocity_before{0};    ///< m/s, v_x low-passed once more: 4 ms behind it
+};
+
+/// The virtual root of the tuft.
+struct RootMotion {
+    Vec3 position{0};  ///< y, m
+    Vec3 velocity{0};  ///< v, m/s
+    Vec3 restored{0};  ///< s, m
+};
+
+/// Step 2.
+struct Fade {
+    Vec3 force{0};   ///< g before the fade, N
+    Vec3 offset{0};  ///< o, N
+};
+
+/// The forces of the last periods, N.
+struct SentForces {
+    std::array<Vec3, 16> ring{};  ///< f
+    std::size_t n = 0;            ///< sent so far
+    std::size_t delay = 0;        ///< periods until a force acts
+};
+
+/// Step 6.
+struct EnergyTank {
+    double energy = 0;            ///< e, J
+    double lent = 0;              ///< J, to an empty tank in this contact
+    double landed = 0;            ///< m, path of x′ since the contact began
     Vec3 played{0};               ///< x′, m
     std::array<Vec3, 2> acted{};  ///< N, sums since x′ moved, of the force with the delay and one period more
     std::size_t n_acted = 0;      ///< forces in each
     Vec3 counted_force{0};        ///< N, f₋ smoothed
-    Vec3 force{0};                ///< f, N
-    Vec3 moment{0};               ///< of hair and handle about the root, N·m, scaled as the force is
-    std::array<Vec3, 16> sent{};  ///< f of the last periods, N: a ring
-    std::size_t n_sent = 0;
-    std::size_t delayed = 0;  ///< periods until a force acts
-    double tank = 0;          ///< e, J
-    double lent = 0;          ///< J, to an empty tank in this contact
-    double landed = 0;        ///< m, path of x′ since the contact began
-    double coupled = 0;       ///< J, in the spring of the coupling and the moving root
-    bool free = true;         ///< neither hair nor ferrule touches
+};
+
+/// What the law remembers from period to period.
+struct LawState {
+    bool started = false;
+    ArmMotion arm;
+    RootMotion root;
+    Fade fade;
+    EnergyTank tank;
+    SentForces sent;
+    Vec3 force{0};       ///< f, N
+    Vec3 moment{0};      ///< of hair and handle about the root, N·m, scaled as the force is
+    double coupled = 0;  ///< J, in the spring of the coupling and the moving root
+    bool free = true;    ///< neither hair nor ferrule touches
 };
 
 /// What one period of the law takes.

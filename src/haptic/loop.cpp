@@ -66,6 +66,36 @@ struct Ink {
     double wetness = 1, left = 1;
 };
 
+/// The newest value of each kind, from thread to thread.
+struct Latest {
+    TripleBuffer<RootPose> pose;
+    TripleBuffer<HairAnswer> answer;
+    TripleBuffer<ServoControl> control;
+    TripleBuffer<LawOptions> law;
+    TripleBuffer<Ink> ink;
+    TripleBuffer<LoopStatus> status;
+};
+
+/// The force of the last periods, for a plot.
+struct RecentForces {
+    std::array<std::atomic<float>, kRecent> ring{};
+    std::atomic<std::uint64_t> n{0};
+};
+
+struct Record {
+    BoundedQueue<RecordedPeriod, 4096> periods;
+    BoundedQueue<std::uint64_t, 4096> solved_ticks;
+    std::vector<RecordedPeriod> recording;  // of the record's thread until it ends
+    std::set<std::uint64_t> recorded_ticks;
+
+    void drain();
+};
+
+struct Counts {
+    std::atomic<int> with_priority{0};
+    std::atomic<std::uint64_t> unconverged{0}, solver_allocations{0};
+};
+
 }  // namespace
 
 void LatenessHistogram::add(double seconds) {
@@ -92,23 +122,13 @@ struct Loop::State {
     LoopOptions options;
     Servo servo;
     std::atomic<bool> running{false}, released{false};
-    std::atomic<int> with_priority{0};
-    std::atomic<std::uint64_t> unconverged{0}, solver_allocations{0};
     Semaphore posed, answered;
-    TripleBuffer<RootPose> pose;
-    TripleBuffer<HairAnswer> answer;
-    TripleBuffer<ServoControl> control;
-    TripleBuffer<LawOptions> law;
-    TripleBuffer<Ink> ink;
-    TripleBuffer<LoopStatus> status;
+    Latest latest;
     BoundedQueue<SolvedPose, 4096> solved;
-    BoundedQueue<RecordedPeriod, 4096> periods;
-    BoundedQueue<std::uint64_t, 4096> solved_ticks;
-    std::array<std::atomic<float>, kRecent> recent{};
-    std::atomic<std::uint64_t> n_recent{0};
+    Counts counts;
+    RecentForces recent;
+    Record record;
     std::thread servo_thread, solver_thread, record_thread;
-    std::vector<RecordedPeriod> recording;  // of the record's thread until it ends
-    std::set<std::uint64_t> recorded_ticks;
     LoopStatus seen;
     bool locked = false;
 
@@ -119,14 +139,13 @@ struct Loop::State {
     void remember_force(const Vec3& force);
     void run_solver();
     void run_record();
-    void drain_record();
     bool wait_for_answer(std::uint64_t tick, std::int64_t until, HairAnswer& newest, bool& any);
 };
 
 // Returns whether the answer to this period's pose has come.
 bool Loop::State::wait_for_answer(std::uint64_t tick, std::int64_t until, HairAnswer& newest, bool& any) {
     for (;;) {
-        any = answer.read(newest) || any;
+        any = latest.answer.read(newest) || any;
         if (any && newest.pose.tick == tick) return true;
         if (!answered.wait_until(until)) return false;
     }
@@ -148,20 +167,20 @@ void Loop::State::report(LoopStatus& now, const ServoOutput& out, const RootPose
         now.buttons = state->buttons;
     }
     ++now.periods;
-    now.realtime = with_priority.load() == 2;
+    now.realtime = counts.with_priority.load() == 2;
     now.lost_poses = solved.overflow();
-    now.unconverged = unconverged.load(std::memory_order_relaxed);
-    status.write(now);
+    now.unconverged = counts.unconverged.load(std::memory_order_relaxed);
+    latest.status.write(now);
 }
 
 void Loop::State::remember_force(const Vec3& force) {
-    const std::uint64_t n = n_recent.load(std::memory_order_relaxed);
-    recent[n % kRecent].store(static_cast<float>(glm::length(force)), std::memory_order_relaxed);
-    n_recent.store(n + 1, std::memory_order_release);
+    const std::uint64_t n = recent.n.load(std::memory_order_relaxed);
+    recent.ring[n % kRecent].store(static_cast<float>(glm::length(force)), std::memory_order_relaxed);
+    recent.n.store(n + 1, std::memory_order_release);
 }
 
 void Loop::State::run_servo() {
-    with_priority += take_priority(options.servo_priority);
+    counts.with_priority += take_priority(options.servo_priority);
     prefault_stack();
     LoopStatus now{.running = true, .locked = locked};
     ServoControl wanted;
@@ -179,12 +198,12 @@ void Loop::State::run_servo() {
         DeviceState state;
         const bool fresh = device.read(state);
         const bool release = released.exchange(false);  // before the control that no longer asks for the emergency
-        control.read(wanted);
-        if (law.read(fresh_law)) servo.set_options(fresh_law);
+        latest.control.read(wanted);
+        if (latest.law.read(fresh_law)) servo.set_options(fresh_law);
         if (release) servo.release();
         const RootPose asked = servo.begin(tick, fresh ? &state : nullptr, wanted);
         if (servo.engaged()) {
-            pose.write(asked);
+            latest.pose.write(asked);
             posed.post();
             now.late_solves += !wait_for_answer(tick, due + kWaitNs, newest, any);
             ++now.solves;
@@ -192,29 +211,29 @@ void Loop::State::run_servo() {
         const ServoOutput out = servo.finish(any ? &newest : nullptr);
         device.send(out.command);
         now.cycle.add(1e-9 * static_cast<double>(now_ns() - due));
-        now.allocations = allocations() - allocated + solver_allocations.load(std::memory_order_relaxed);
+        now.allocations = allocations() - allocated + counts.solver_allocations.load(std::memory_order_relaxed);
         report(now, out, asked, fresh ? &state : nullptr);
         remember_force(out.force);
         if (options.record) {
             ServoControl done = wanted;
             done.clutched = servo.clutched();
-            periods.push({.tick = tick,
-                          .fresh = fresh,
-                          .state = state,
-                          .control = done,
-                          .answer = any ? newest.pose.tick : 0,
-                          .force = out.force});
+            record.periods.push({.tick = tick,
+                                 .fresh = fresh,
+                                 .state = state,
+                                 .control = done,
+                                 .answer = any ? newest.pose.tick : 0,
+                                 .force = out.force});
         }
         due = std::max(due + kPeriodNs, begin + (now_ns() - begin) / kPeriodNs * kPeriodNs);
     }
     device.send({});
     now.running = now.engaged = false;
     now.force = Vec3{0};
-    status.write(now);
+    latest.status.write(now);
 }
 
 void Loop::State::run_solver() {
-    with_priority += take_priority(options.solver_priority);
+    counts.with_priority += take_priority(options.solver_priority);
     prefault_stack();
     constexpr std::size_t kLargestBlock = 64 * 1024;  // bytes; a wide tuft's largest buffer takes 40 kB
     constexpr int kBlocks = 64;                       // of each size; 24 were too few for a tuft of one spine
@@ -224,20 +243,20 @@ void Loop::State::run_solver() {
         posed.wait();
         if (!running.load(std::memory_order_relaxed)) return;
         RootPose asked;
-        if (!pose.read(asked)) continue;
+        if (!latest.pose.read(asked)) continue;
         Ink fresh;
-        if (ink.read(fresh)) solver.set_ink(fresh.wetness, fresh.left);
+        if (latest.ink.read(fresh)) solver.set_ink(fresh.wetness, fresh.left);
         const HairAnswer found = solver.solve(asked);
-        answer.write(found);
+        latest.answer.write(found);
         answered.post();
-        solver_allocations.store(allocations() - allocated, std::memory_order_relaxed);
-        if (!found.converged) unconverged.fetch_add(1, std::memory_order_relaxed);
+        counts.solver_allocations.store(allocations() - allocated, std::memory_order_relaxed);
+        if (!found.converged) counts.unconverged.fetch_add(1, std::memory_order_relaxed);
         solved.push({asked, found.touching});
-        if (options.record) solved_ticks.push(asked.tick);
+        if (options.record) record.solved_ticks.push(asked.tick);
     }
 }
 
-void Loop::State::drain_record() {
+void Record::drain() {
     RecordedPeriod period;
     while (periods.pop(period)) recording.push_back(period);
     std::uint64_t tick = 0;
@@ -246,7 +265,7 @@ void Loop::State::drain_record() {
 
 void Loop::State::run_record() {
     while (running.load(std::memory_order_relaxed)) {
-        drain_record();
+        record.drain();
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
 }
@@ -275,12 +294,12 @@ void Loop::stop() {
     s.posed.post();
     s.solver_thread.join();
     if (s.record_thread.joinable()) s.record_thread.join();
-    s.drain_record();
+    s.record.drain();
     if (s.locked) ::munlockall();
 }
 
 void Loop::set_control(const ServoControl& control) {
-    state_->control.write(control);
+    state_->latest.control.write(control);
 }
 
 void Loop::release() {
@@ -288,23 +307,23 @@ void Loop::release() {
 }
 
 void Loop::set_law(const LawOptions& law) {
-    state_->law.write(law);
+    state_->latest.law.write(law);
 }
 
 void Loop::set_ink(double wetness, double ink_left) {
-    state_->ink.write({wetness, ink_left});
+    state_->latest.ink.write({wetness, ink_left});
 }
 
 LoopStatus Loop::status() {
-    state_->status.read(state_->seen);
+    state_->latest.status.read(state_->seen);
     return state_->seen;
 }
 
 std::vector<float> Loop::recent_forces() const {
-    const std::uint64_t end = state_->n_recent.load(std::memory_order_acquire);
+    const std::uint64_t end = state_->recent.n.load(std::memory_order_acquire);
     std::vector<float> out;
     for (std::uint64_t i = end > kRecent ? end - kRecent : 0; i < end; ++i)
-        out.push_back(state_->recent[i % kRecent].load(std::memory_order_relaxed));
+        out.push_back(state_->recent.ring[i % kRecent].load(std::memory_order_relaxed));
     return out;
 }
 
@@ -313,8 +332,9 @@ bool Loop::pop(SolvedPose& pose) {
 }
 
 std::vector<RecordedPeriod> Loop::take_recording() {
-    for (RecordedPeriod& period : state_->recording) period.solved = state_->recorded_ticks.contains(period.tick);
-    return std::move(state_->recording);
+    for (RecordedPeriod& period : state_->record.recording)
+        period.solved = state_->record.recorded_ticks.contains(period.tick);
+    return std::move(state_->record.recording);
 }
 
 }  // namespace tuft::haptic

@@ -42,11 +42,15 @@ RootPose Servo::begin(std::uint64_t tick, const DeviceState* fresh, const ServoC
         restart_law(law_, arm_, rotation_);
         restarted_ = tick;
     }
-    return {.tick = tick, .position = law_.root, .rotation = rotation_, .buttons = buttons_, .taken_up = restarted_};
+    return {.tick = tick,
+            .position = law_.root.position,
+            .rotation = rotation_,
+            .buttons = buttons_,
+            .taken_up = restarted_};
 }
 
 ServoOutput Servo::finish(const HairAnswer* newest) {
-    ServoOutput out{.root = law_.root,
+    ServoOutput out{.root = law_.root.position,
                     .arm = arm_,
                     .device = device_,
                     .fault = verdict_.fault,

@@ -27,7 +27,7 @@ TEST(Law, TheArmNeverShowsMoreThanTheCoupling) {
         for (int i = 0; i < 4000; ++i) {
             x = -depth * std::min(1.0, i / 2000.0);
             force = step_law(options, state, {.arm = {0, 0, x}, .hair = &hair}).force.z;
-            hair = spring(state.root.z, 367);
+            hair = spring(state.root.position.z, 367);
         }
         EXPECT_LT(force / depth, coupling_of(options)) << limits.name;
         // Two springs in series.
@@ -44,7 +44,7 @@ TEST(Law, RestoreTakesTheSoftnessAway) {
     double force = 0;
     for (int i = 0; i < 4000; ++i) {
         force = step_law(options, state, {.arm = {0, 0, -2e-3 * std::min(1.0, i / 1000.0)}, .hair = &hair}).force.z;
-        hair = spring(state.root.z, 20);
+        hair = spring(state.root.position.z, 20);
     }
     EXPECT_NEAR(force, 15 * 20 * 2e-3, 0.01 * 15 * 20 * 2e-3);
 }
@@ -126,7 +126,7 @@ TEST(Law, AHandThatTurnsRoundFeelsNoStep) {
             Vec3 before{0}, at{0};
             for (int i = 0; i < 1000; ++i) {
                 const Vec3 x{0, 0, size * (std::cos(rate * kPeriod * i) - 0.3)};
-                const HairAnswer hair = spring(state.root.z, 367);
+                const HairAnswer hair = spring(state.root.position.z, 367);
                 const Vec3 measured = limits.count * glm::round(x / limits.count);
                 const Vec3 f = step_law(options, state, {.arm = measured, .hair = &hair}).force;
                 if (i > 20) {  // the motion begins at once

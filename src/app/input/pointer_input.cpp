@@ -187,18 +187,21 @@ Vec3 PointerInput::levelled_normal(const Aim& aim, const mesh::SurfacePoint& hit
 void PointerInput::onto_surface() {
     constexpr double kFurthest = 5e-3;
     const auto is_met = [&](const mesh::SurfacePoint& p) {
-        return (glm::dot(p.normal, normal_) < 0) == on_back_.value_or(false);
+        return (glm::dot(p.normal, point_.normal) < 0) == side_.on_back.value_or(false);
     };
-    auto on = surface_.closest_point(point_, kFurthest);
+    auto on = surface_.closest_point(point_.position, kFurthest);
     // In a thin wall its other side may be nearer.
-    if (on && !is_met(*on)) on = surface_.ray(point_ + kFurthest * normal_, -normal_, 0, 2 * kFurthest);
+    if (on && !is_met(*on))
+        on = surface_.ray(point_.position + kFurthest * point_.normal, -point_.normal, 0, 2 * kFurthest);
     if (!on || !is_met(*on)) return;
-    const Vec3 offset = on->position - point_;
-    const bool sideways = glm::length(offset - glm::dot(offset, normal_) * normal_) > 0.5 * glm::length(offset);
-    if (bridged_ >= 0 && motion_.time - bridged_ < 5 * settings_.smoothing + 2 * kFrame && sideways) return;
-    const double side = glm::dot(on->normal, normal_) < 0 ? -1 : 1;
-    point_ = on->position;
-    if (settings_.string > 0) normal_ = side * on->normal;
+    const Vec3 offset = on->position - point_.position;
+    const bool sideways =
+        glm::length(offset - glm::dot(offset, point_.normal) * point_.normal) > 0.5 * glm::length(offset);
+    if (motion_.bridged >= 0 && motion_.time - motion_.bridged < 5 * settings_.smoothing + 2 * kFrame && sideways)
+        return;
+    const double side = glm::dot(on->normal, point_.normal) < 0 ? -1 : 1;
+    point_.position = on->position;
+    if (settings_.string > 0) point_.normal = side * on->normal;
 }
 
 brush::Pose PointerInput::pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure,
@@ -209,8 +212,8 @@ brush::Pose PointerInput::pose_at(const Aim& aim, const Vec3& point, const Vec3&
         const Vec3 d = v - glm::dot(v, normal) * normal;
         return glm::length(d) > 1e-6 ? glm::normalize(d) : Vec3(0);
     };
-    const double tipped =
-        std::max(0.0, kTips - glm::length(leant)) * (1 - smooth_step(gone_ / (kTipTurns * holder_.tip_lag_turn)));
+    const double tipped = std::max(0.0, kTips - glm::length(leant)) *
+                          (1 - smooth_step(motion_.gone / (kTipTurns * holder_.tip_lag_turn)));
     const Vec3 up = glm::normalize(normal + std::tan(tilt.x) * along(aim.view_right) +
                                    std::tan(tilt.y) * along(aim.view_up) + tipped * dragged_.string);
     const double height = holder_.tuft_length + (pressure > 0 ? -pressure * holder_.working_depth : holder_.hover);
@@ -231,16 +234,16 @@ Vec2 PointerInput::lean_of_make(const Aim& aim, const Vec3& normal) const {
 // Of the ferrule, on the surface: where a make leans that is set down without a direction.
 Vec3 PointerInput::across(const Aim& aim) const {
     if (!holder_.across) return Vec3(0);
-    const stroke::Axes axes = stroke::axes_across(normal_, aim.view_right, -aim.view_up);
+    const stroke::Axes axes = stroke::axes_across(point_.normal, aim.view_right, -aim.view_up);
     return -std::sin(roll_at(aim)) * axes.right - std::cos(roll_at(aim)) * axes.down;
 }
 
 double PointerInput::roll_at(const Aim& aim) const {
-    return settings_.roll + (settings_.roll_follow && follower_.started ? follower_.roll : -aim.turn);
+    return settings_.roll + (settings_.roll_follow && turns_.follower.started ? turns_.follower.roll : -aim.turn);
 }
 
 double PointerInput::roll_of_ferrule(const Aim& aim) const {
-    return blade_ ? blade_->roll() : roll_at(aim);
+    return turns_.blade ? turns_.blade->roll() : roll_at(aim);
 }
 
 // A wide ferrule has its broad side across the view; a round one lies as it may.
@@ -259,18 +262,18 @@ Quat PointerInput::rotation_at(const Aim& aim, const Vec3& normal, const Vec3& u
 // The holder has gone on: it turns as the pen does, and after its stroke. Its hair follows.
 void PointerInput::turn_holder(const Aim& aim, const Vec3& motion) {
     if (!wide_) return;
-    const stroke::Axes axes = stroke::axes_across(normal_, aim.view_right, -aim.view_up);
+    const stroke::Axes axes = stroke::axes_across(point_.normal, aim.view_right, -aim.view_up);
     if (settings_.roll_follow)
-        stroke::follow_stroke(follower_, -aim.turn, {glm::dot(motion, axes.right), glm::dot(motion, axes.down)});
+        stroke::follow_stroke(turns_.follower, -aim.turn, {glm::dot(motion, axes.right), glm::dot(motion, axes.down)});
     if (holder_.blade_landing > 0 && is_clean(aim)) {
-        if (!blade_) blade_.emplace(holder_.tip_lag_turn, roll_at(aim));
-        blade_->follow(roll_at(aim), glm::length(motion));
+        if (!turns_.blade) turns_.blade.emplace(holder_.tip_lag_turn, roll_at(aim));
+        turns_.blade->follow(roll_at(aim), glm::length(motion));
     }
     const Vec2 ahead{glm::dot(dragged_.string, axes.right), glm::dot(dragged_.string, axes.down)};
     if (!holder_.turned || glm::length(ahead) < 1e-9) return;
     const double turn = roll_at(aim) - std::atan2(-ahead.y, ahead.x);
-    if (!turn_) turn_.emplace(holder_.tuft_length, turn);
-    turn_->follow(turn, glm::length(motion));
+    if (!turns_.followed) turns_.followed.emplace(holder_.tuft_length, turn);
+    turns_.followed->follow(turn, glm::length(motion));
 }
 
 // Where the holder is for ink at the point: ahead along the string, and under a lean aside.
@@ -281,18 +284,20 @@ Vec3 PointerInput::ahead_of(const Aim& aim, const Vec3& normal, double pressure)
     const Vec2 ahead{glm::dot(dragged_.string, axes.right), glm::dot(dragged_.string, axes.down)};
     if (glm::length(ahead) < 1e-9) return Vec3(0);
     const Vec2 tilt = settings_.tilt + lean_of_make(aim, normal);
-    const double roll = turn_ ? turn_->turn() + std::atan2(-ahead.y, ahead.x) : roll_of_ferrule(aim);
+    const double roll =
+        turns_.followed ? turns_.followed->turn() + std::atan2(-ahead.y, ahead.x) : roll_of_ferrule(aim);
     const Vec2 lag = taut * stroke::tip_lag_at(holder_, pressure, {tilt.x, -tilt.y}, roll, glm::normalize(ahead));
-    const double spread = pressure * spread_ * (1 - smooth_step(gone_ / (kSpreadGone * holder_.tuft_length)));
+    const double spread =
+        pressure * motion_.spread * (1 - smooth_step(motion_.gone / (kSpreadGone * holder_.tuft_length)));
     return lag.x * axes.right + lag.y * axes.down + spread * dragged_.string;
 }
 
 // The point has moved: what it drags follows on the strings, along the surface.
 void PointerInput::drag(const Aim& aim) {
     const auto follow = [&](DraggedPoint& dragged, double reach) {
-        Vec3 offset = along_surface(point_ - dragged.position, normal_, aim, at_start());
+        Vec3 offset = along_surface(point_.position - dragged.position, point_.normal, aim, at_start());
         if (const double length = glm::length(offset); length > reach) offset *= reach / length;
-        dragged.position = point_ - offset;
+        dragged.position = point_.position - offset;
         dragged.string = offset / reach;
     };
     if (is_clean(aim)) follow(dragged_, holder_.tip_lag_turn);
@@ -300,8 +305,8 @@ void PointerInput::drag(const Aim& aim) {
 }
 
 double PointerInput::goal_pressure(const Aim& aim) const {
-    const double travel = kLightly + gone_ / (kOverAnEdge * holder_.tuft_length);
-    const double landed = over_edge_ ? smooth_step(travel / (1 + kLightly)) : 1;
+    const double travel = kLightly + motion_.gone / (kOverAnEdge * holder_.tuft_length);
+    const double landed = side_.over_edge ? smooth_step(travel / (1 + kLightly)) : 1;
     if (aim.pressure >= 0) return landed * pen_depth(settings_, aim.pressure);
     const double slow = 1.0 - settings_.speed_effect * std::min(1.0, motion_.speed / settings_.fast);
     const double rested = settings_.dwell_effect * std::min(1.0, motion_.rest / settings_.dwell);
@@ -311,35 +316,35 @@ double PointerInput::goal_pressure(const Aim& aim) const {
 void PointerInput::pen_down(const Aim& aim, const AimedSurface& hit, const Vec3& towards,
                             std::vector<StrokeStep>& steps) {
     down_ = true;
-    goal_ = point_ = hit.position;
-    normal_ = hit.normal;
-    bridged_ = -1;
+    goal_.position = point_.position = hit.position;
+    point_.normal = hit.normal;
+    motion_.bridged = -1;
     motion_.start = aim.time;
-    motion_.time = motion_.speed = motion_.rest = motion_.pressure = gone_ = 0;
-    spread_ = 0;
-    follower_ = {};
-    turn_.reset();
-    blade_.reset();
-    dragged_ = {point_ - holder_.tip_lag_turn * towards, towards};
+    motion_.time = motion_.speed = motion_.rest = motion_.pressure = motion_.gone = 0;
+    motion_.spread = 0;
+    turns_.follower = {};
+    turns_.followed.reset();
+    turns_.blade.reset();
+    dragged_ = {point_.position - holder_.tip_lag_turn * towards, towards};
     turn_holder(aim, Vec3(0));
     const Vec3 leans = towards != Vec3(0) ? towards : across(aim);
-    leant_ = {point_ - stroke::lean_string(holder_) * leans, leans};
+    leant_ = {point_.position - stroke::lean_string(holder_) * leans, leans};
     steps.push_back({StrokeStep::Kind::begin, {}});
-    steps.push_back({StrokeStep::Kind::poses, {pose_at(aim, point_, normal_, 0, 0)}});
+    steps.push_back({StrokeStep::Kind::poses, {pose_at(aim, point_.position, point_.normal, 0, 0)}});
 }
 
 // A clean stroke is asked for: nothing is touched until its direction is known.
 void PointerInput::wait(const Aim& aim, const AimedSurface& hit, std::vector<StrokeStep>& steps) {
     waiting_.push_back({aim, hit});
     aim_ = aim;
-    goal_ = hit.position;
-    goal_normal_ = hit.normal;
+    goal_.position = hit.position;
+    goal_.normal = hit.normal;
     const bool known = glm::distance(hit.position, waiting_.front().surface.position) >= kKnown * aim.metres_per_pixel;
     if (known || aim.time - waiting_.front().aim.time > kRestTime) set_down(steps);
 }
 
 double PointerInput::at_start() const {
-    return 1 - smooth_step(gone_ / std::max(holder_.steady, 1e-6));
+    return 1 - smooth_step(motion_.gone / std::max(holder_.steady, 1e-6));
 }
 
 // At its start a clean stroke has the normal of what lies ahead, where that leans further ahead: over the rounding of a
@@ -367,26 +372,27 @@ void PointerInput::set_down(std::vector<StrokeStep>& steps) {
         along_surface(last.surface.position - first.surface.position, first.surface.normal, first.aim, 1);
     const double length = glm::length(motion);
     const Vec3 towards = length >= 0.5 * kKnown * last.aim.metres_per_pixel ? motion / length : Vec3(0);
-    gone_ = 0;
+    motion_.gone = 0;
     AimedSurface surface = first.surface;
     surface.normal = normal_at_start(first.aim, surface, towards);
     pen_down(first.aim, surface, towards, steps);
     motion_.start -= kSetDown;  // as if it had begun earlier: it lags no further behind
     motion_.speed = length / std::max(kFrame, last.aim.time - first.aim.time);
-    if (!over_edge_) spread_ = kSpread * holder_.tuft_length * (1 - std::min(1.0, motion_.speed / settings_.fast));
+    if (!side_.over_edge)
+        motion_.spread = kSpread * holder_.tuft_length * (1 - std::min(1.0, motion_.speed / settings_.fast));
     const double pressure = (glm::length(dragged_.string) > 0 ? kTouch : 1.0) * goal_pressure(first.aim);
     const int n = static_cast<int>(std::ceil(kSetDown / kFrame));
     StrokeStep step;
     for (int i = 1; i <= n; ++i) {
         motion_.time = kSetDown * i / n;
         motion_.pressure = pressure * i / n;
-        step.poses.push_back(pose_at(first.aim, point_, normal_, motion_.pressure, motion_.time));
+        step.poses.push_back(pose_at(first.aim, point_.position, point_.normal, motion_.pressure, motion_.time));
     }
     for (std::size_t i = 1; i < waiting.size(); ++i) {
-        if (waiting[i].surface.bridged) bridged_ = motion_.time;
+        if (waiting[i].surface.bridged) motion_.bridged = motion_.time;
         const Vec3 normal = normal_at_start(waiting[i].aim, waiting[i].surface, dragged_.string);
         follow(waiting[i].aim, waiting[i].surface.position, normal, step.poses);
-        goal_normal_ = waiting[i].surface.normal;
+        goal_.normal = waiting[i].surface.normal;
     }
     steps.push_back(std::move(step));
 }
@@ -396,47 +402,50 @@ void PointerInput::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, 
     const int steps = std::clamp(static_cast<int>(std::ceil(span / kFrame)), 1, 64);
     const double dt = span / steps;
     for (int i = 0; i < steps; ++i) {
-        const Vec3 before = point_;
-        Vec3 target = goal_ + static_cast<double>(i + 1) / steps * (goal - goal_), pace = (goal - goal_) / span;
+        const Vec3 before = point_.position;
+        Vec3 target = goal_.position + static_cast<double>(i + 1) / steps * (goal - goal_.position),
+             pace = (goal - goal_.position) / span;
         if (settings_.string > 0) {
-            const double away = glm::distance(target, point_);
-            target = away > settings_.string ? point_ + (1 - settings_.string / away) * (target - point_) : point_;
+            const double away = glm::distance(target, point_.position);
+            target = away > settings_.string
+                         ? point_.position + (1 - settings_.string / away) * (target - point_.position)
+                         : point_.position;
             pace = Vec3(0);
         }
         // Low-pass of a goal that moves evenly, solved exactly: y' = (x - y) / τ, x' = pace.
         const Vec3 behind = target - settings_.smoothing * pace;
-        point_ = behind + (1 - part(dt, settings_.smoothing)) * (point_ - behind + pace * dt);
-        const bool leans_ahead = glm::dot(normal - normal_, dragged_.string) > 0;
+        point_.position = behind + (1 - part(dt, settings_.smoothing)) * (point_.position - behind + pace * dt);
+        const bool leans_ahead = glm::dot(normal - point_.normal, dragged_.string) > 0;
         const double constant = std::max(0.01, settings_.smoothing) * (leans_ahead ? 1 - at_start() : 1);
-        normal_ = glm::normalize(normal_ + part(dt, constant) * (normal - normal_));
+        point_.normal = glm::normalize(point_.normal + part(dt, constant) * (normal - point_.normal));
         onto_surface();
         drag(aim);
-        turn_holder(aim, point_ - before);
-        gone_ += glm::distance(before, point_);
-        const double v = glm::distance(before, point_) / dt;
+        turn_holder(aim, point_.position - before);
+        motion_.gone += glm::distance(before, point_.position);
+        const double v = glm::distance(before, point_.position) / dt;
         motion_.speed += part(dt, 0.05) * (v - motion_.speed);
         motion_.rest = motion_.speed < 0.004 ? motion_.rest + dt : 0;
         motion_.pressure += part(dt, aim.pressure >= 0 ? 0.004 : kRise) * (goal_pressure(aim) - motion_.pressure);
         motion_.time += dt;
-        poses.push_back(pose_at(aim, point_, normal_, motion_.pressure, motion_.time));
+        poses.push_back(pose_at(aim, point_.position, point_.normal, motion_.pressure, motion_.time));
     }
-    goal_ = goal;
+    goal_.position = goal;
 }
 
 std::vector<StrokeStep> PointerInput::move(const Aim& aim) {
     std::vector<StrokeStep> steps;
     auto hit = find_surface(aim);
     if (hit && !hit->bridged) {
-        if (!on_back_ && !hit->inside) on_back_ = hit->back;
-        if (!on_back_ || hit->back != *on_back_) hit.reset();
+        if (!side_.on_back && !hit->inside) side_.on_back = hit->back;
+        if (!side_.on_back || hit->back != *side_.on_back) hit.reset();
     }
     // A small movement of the cursor that goes far on the model crossed an edge of its outline.
     const double expected = drawing() && hit ? glm::distance(aim.ray.origin, aim_.ray.origin) +
                                                    glm::distance(aim.ray.direction, aim_.ray.direction) * hit->distance
                                              : 0;
-    if (drawing() && (!hit || glm::distance(hit->position, goal_) > kJump + kGrazing * expected)) {
+    if (drawing() && (!hit || glm::distance(hit->position, goal_.position) > kJump + kGrazing * expected)) {
         steps = lift();
-        over_edge_ = true;
+        side_.over_edge = true;
     }
     if (!hit) return steps;
     if (!down_ && is_clean(aim)) {
@@ -451,23 +460,23 @@ std::vector<StrokeStep> PointerInput::move(const Aim& aim) {
         if (aim.pressure >= 0 && aim_.pressure >= 0 && aim.time - aim_.time > 2 * kReport) {
             Aim still = aim_;
             still.time = aim.time - kReport;
-            follow(still, goal_, goal_normal_, step.poses);
+            follow(still, goal_.position, goal_.normal, step.poses);
         }
-        if (hit->bridged) bridged_ = motion_.time;
+        if (hit->bridged) motion_.bridged = motion_.time;
         if (is_clean(aim)) hit->normal = normal_at_start(aim, *hit, dragged_.string);
         follow(aim, hit->position, hit->normal, step.poses);
         steps.push_back(std::move(step));
     }
     aim_ = aim;
-    goal_normal_ = hit->normal;
+    goal_.normal = hit->normal;
     return steps;
 }
 
 // What the smoothing, or the string, kept the hand behind the cursor. It slows down evenly from the speed that it has,
 // and the pressure goes as what is left of the path, as far as that is longer than the hand needs to stop anyway.
 void PointerInput::arrive(std::vector<brush::Pose>& poses) {
-    const Vec3 from = point_;
-    const double remaining = glm::distance(goal_, from);
+    const Vec3 from = point_.position;
+    const double remaining = glm::distance(goal_.position, from);
     if (remaining < 0.25 * aim_.metres_per_pixel) return;
     const double seconds = std::clamp(2 * remaining / std::max(motion_.speed, 1e-6), kFrame, kSlowest),
                  start = motion_.pressure;
@@ -475,16 +484,16 @@ void PointerInput::arrive(std::vector<brush::Pose>& poses) {
     const double flick = std::min(1.0, remaining / (kFlick * holder_.working_depth));
     for (int i = 1; i <= n; ++i) {
         const double t = static_cast<double>(i) / n, left = (1 - t) * (1 - t);
-        const Vec3 before = point_;
-        point_ = from + (1 - left) * (goal_ - from);
-        normal_ = glm::normalize(normal_ + t * (goal_normal_ - normal_));
+        const Vec3 before = point_.position;
+        point_.position = from + (1 - left) * (goal_.position - from);
+        point_.normal = glm::normalize(point_.normal + t * (goal_.normal - point_.normal));
         onto_surface();
         drag(aim_);
-        turn_holder(aim_, point_ - before);
-        gone_ += glm::distance(before, point_);
+        turn_holder(aim_, point_.position - before);
+        motion_.gone += glm::distance(before, point_.position);
         motion_.pressure = start * (1 - kFlickLift * flick * (1 - left));
         motion_.time += seconds / n;
-        poses.push_back(pose_at(aim_, point_, normal_, motion_.pressure, motion_.time));
+        poses.push_back(pose_at(aim_, point_.position, point_.normal, motion_.pressure, motion_.time));
     }
 }
 
@@ -499,11 +508,12 @@ std::vector<StrokeStep> PointerInput::lift() {
     for (int i = 1; i <= count; ++i) {
         const double s = static_cast<double>(i) / count;
         motion_.time += kLift / count;
-        step.poses.push_back(pose_at(aim_, point_, normal_, i == count ? 0.0 : start * (1 - s), motion_.time));
+        step.poses.push_back(
+            pose_at(aim_, point_.position, point_.normal, i == count ? 0.0 : start * (1 - s), motion_.time));
     }
     down_ = false;
-    follower_ = {};
-    blade_.reset();
+    turns_.follower = {};
+    turns_.blade.reset();
     steps.push_back(std::move(step));
     steps.push_back({StrokeStep::Kind::end, {}});
     return steps;

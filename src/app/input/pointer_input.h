@@ -122,6 +122,22 @@ class PointerInput {
         double pressure = 0;                   ///< 0-1
         double time = 0, rest = 0, start = 0;  ///< seconds
         double speed = 0;                      ///< m/s
+        double gone = 0;                       ///< metres moved since pen down
+        double spread = 0;                     ///< metres, additional lag of the tip at the start, at pressure 1
+        double bridged = -1;                   ///< `time` when the goal was last over a gap; negative: never
+    };
+    struct Place {
+        Vec3 position{0}, normal{0, 0, 1};
+    };
+    /// How the holder turns about its axis along the stroke.
+    struct Turns {
+        stroke::RollFollower follower;                 ///< with `roll_follow`
+        std::optional<stroke::BladeRoll> blade;        ///< of a clean stroke of a blade
+        std::optional<stroke::FollowedTurn> followed;  ///< of a brush whose tip lag differs by turn
+    };
+    struct Side {
+        std::optional<bool> on_back;  ///< of the surface, where it was set down
+        bool over_edge = false;       ///< the cursor crossed an edge of the outline since it was pressed
     };
 
     std::optional<AimedSurface> find_gap(const Aim& aim, double centre) const;
@@ -149,22 +165,16 @@ class PointerInput {
     const mesh::SurfaceQuery& surface_;
     stroke::HolderOptions holder_;
     PointerSettings settings_;
-    bool wide_;                      ///< the ferrule is wider than thick
-    stroke::RollFollower follower_;  ///< of the stroke, with `roll_follow`
-    double reach_;                   ///< metres, radius in which gaps are bridged
-    double bridged_ = -1;            ///< `motion_.time` when the goal was last over a gap; negative: never
+    bool wide_;     ///< the ferrule is wider than thick
+    double reach_;  ///< metres, radius in which gaps are bridged
     bool down_ = false;
-    std::optional<bool> on_back_;               ///< of the surface, where it was set down
-    bool over_edge_ = false;                    ///< the cursor crossed an edge of the outline since it was pressed
-    Aim aim_;                                   ///< the last one
-    std::vector<Waiting> waiting_;              ///< of a clean stroke, until its direction is known
-    DraggedPoint dragged_;                      ///< on a string of `tip_lag_turn`: where the tip lag points
-    std::optional<stroke::BladeRoll> blade_;    ///< of a clean stroke of a blade
-    std::optional<stroke::FollowedTurn> turn_;  ///< of a brush whose tip lag differs by turn
-    DraggedPoint leant_;                        ///< on one of `stroke::lean_string`: where the make leans
-    double gone_ = 0;                           ///< metres moved since pen down
-    double spread_ = 0;                         ///< metres, additional lag of the tip there, at pressure 1
-    Vec3 goal_{0}, goal_normal_{0, 0, 1}, point_{0}, normal_{0, 0, 1};
+    Side side_;
+    Aim aim_;                       ///< the last one
+    std::vector<Waiting> waiting_;  ///< of a clean stroke, until its direction is known
+    DraggedPoint dragged_;          ///< on a string of `tip_lag_turn`: where the tip lag points
+    DraggedPoint leant_;            ///< on one of `stroke::lean_string`: where the make leans
+    Turns turns_;
+    Place goal_, point_;  ///< of the cursor; of the smoothed or dragged point
     Motion motion_;
 };
 
