@@ -15,7 +15,10 @@ constexpr double kLeastPaint = 5e-8;  // m²: less is a speck that no one would 
 constexpr double kSlit = 2e-6;        // metres: sides of a slit nearer than this are one
 constexpr double kStraight = 5e-6;    // metres: points nearer than this to the line without them are left out
 constexpr double kWidestClosing = 3;  // of `join`: with hardly a bleed nothing bridges gaps
-constexpr double kLeastHole = 3;      // of the bleed, or half of `join`: smaller holes are a nuisance to cut and lay
+// Of the bleed, within bounds in metres: radius of the inner corners of a cut line. Film tears from sharper ones, and
+// the points between two arcs that meet fold over.
+constexpr double kInnerCorner = 0.5, kLeastCorner = 1e-3, kMostCorner = 5e-3;
+constexpr double kLeastHole = 3;  // of the bleed, or half of `join`: smaller holes are a nuisance to cut and lay
 
 /// Cells between the rim of the grid and the first row. A regular mesh then has no edge along a row, whose samples
 /// would lie in both triangles or in none.
@@ -153,12 +156,14 @@ Region without_small_holes(const Region& region, double radius) {
     return out;
 }
 
-/// The least distance at which the closing bridges two points `join` apart: √(g² − ¼ join²) = g − bleed.
+/// The distance g of the closing: at least that at which it bridges two points `join` apart, √(g² − ¼ join²) =
+/// g − bleed, and that at which inner corners get their radius, g − bleed.
 double closing_distance(const OutlineOptions& options) {
-    const double half = 0.5 * options.join;
-    if (half <= options.bleed) return options.bleed;
-    const double bridging = (half * half + options.bleed * options.bleed) / (2 * std::max(options.bleed, 1e-9));
-    return std::min(bridging, kWidestClosing * options.join);
+    const double half = 0.5 * options.join, bleed = options.bleed;
+    const double rounding = bleed + std::clamp(kInnerCorner * bleed, kLeastCorner, kMostCorner);
+    if (half <= bleed) return rounding;
+    const double bridging = (half * half + bleed * bleed) / (2 * std::max(bleed, 1e-9));
+    return std::max(rounding, std::min(bridging, kWidestClosing * options.join));
 }
 
 }  // namespace

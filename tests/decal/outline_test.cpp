@@ -217,6 +217,20 @@ TEST(Outline, NearIslandsShareAPieceAndFarOnesDoNot) {
     EXPECT_EQ(Sheet100().outlines(two(40 * kMm), {.bleed = 1 * kMm}).size(), 2u);  // 30 mm
 }
 
+// Film tears from a sharp inner corner. Two arcs that meet leave none: a disc of a little less than half the bleed that
+// rolls round the film touches all of its line, so the closing by that disc adds nothing. Two discs with their sharp
+// corners would leave 2.1 mm². Tolerance: a tenth of a cell along the line, as elsewhere.
+TEST(Outline, HasNoSharpInnerCorner) {
+    const auto two = [](const Vec3& p) {
+        return disc({0.043, 0.05, 0}, 2 * kMm)(p) || disc({0.057, 0.05, 0}, 2 * kMm)(p);
+    };
+    const auto found = Sheet100().outlines(two, {.bleed = 8 * kMm});
+    ASSERT_EQ(found.size(), 1u);
+    const Region closed = offset(offset(found[0].film, 3.5 * kMm), -3.5 * kMm);
+    EXPECT_LT(area_of(closed) - area_of(found[0].film), 0.01 * kMm * 80 * kMm);
+    EXPECT_GT(area_of(found[0].film), test::kPi * 100 * kMm * kMm);
+}
+
 TEST(Outline, ASpeckGetsFilmThatFingersCanHold) {
     const auto found = Sheet100().outlines(disc({0.05, 0.05, 0}, 0.4 * kMm), {.bleed = 0.5 * kMm});
     ASSERT_EQ(found.size(), 1u);
