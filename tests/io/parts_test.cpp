@@ -228,8 +228,9 @@ TEST_F(Parts, OnlyWhatIsPaintedGetsTheDecoratedMaterial) {
     const json before = glb_json(folder / "truck.glb"), after = glb_json(folder / "out.glb");
     EXPECT_EQ(names_in(after["nodes"]), names_in(before["nodes"]));
     for (std::size_t n = 0; n < before["nodes"].size(); ++n)
-        for (const char* key : {"children", "translation", "rotation", "scale", "extras"})
+        for (const char* key : {"children", "translation", "rotation", "scale"})
             EXPECT_EQ(after["nodes"][n].value(key, json()), before["nodes"][n].value(key, json())) << n << key;
+    EXPECT_EQ(after["nodes"][1]["extras"]["plate"], before["nodes"][1]["extras"]["plate"]);
     EXPECT_THAT(names_in(after["materials"]), ElementsAre("Paint", "Glass", "Rubber", "Chrome", "Flag", "decorated"));
     EXPECT_THAT(names_in(after["meshes"]), ElementsAre("body mesh", "wheel mesh", "flag mesh", "wheel mesh"))
         << "the other wheel shows the mesh that both had";
@@ -463,6 +464,74 @@ TEST_F(Parts, OfGlassKeepTheirNamesAndGetATransmissionMap) {
     EXPECT_THAT(texts(export_model(folder / "plain.obj", *model.mesh, model.atlas, maps, options)),
                 Contains(HasSubstr("are of glass; this format has no map of it")));
     EXPECT_FALSE(fs::exists(folder / "plain_transmission.png"));
+}
+
+/// Boxes as Blender writes them: objects that share a material, one of them of two; one with a mesh of its own
+/// material.
+std::vector<char> blender_glb() {
+    GltfMaker maker;
+    json& d = maker.document;
+    d["materials"] = json::parse(R"([{"name":"Paint","pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1]}},
+      {"name":"Glass"},{"name":"Rubber","pbrMetallicRoughness":{"baseColorFactor":[0,0,1,1]}}])");
+    const auto at = [](float x) { return Vec3f(x, 0, 0); };
+    const Vec3f size(1);
+    d["meshes"].push_back({{"name", "Cube.001"}, {"primitives", {maker.box(at(0), size, 0)}}});
+    d["meshes"].push_back(
+        {{"name", "Cube.002"}, {"primitives", {maker.box(at(2), size, 0), maker.box(at(4), size, 1)}}});
+    d["meshes"].push_back({{"name", "Cube.003"}, {"primitives", {maker.box(at(6), size, 2)}}});
+    d["meshes"].push_back({{"name", "Cube.004"}, {"primitives", {maker.box(at(8), size, 1)}}});
+    d["nodes"] = json::parse(R"([{"name":"Hood","mesh":0},{"name":"Door","mesh":1},{"name":"Tyre","mesh":2},
+      {"name":"Window","mesh":3},{"name":"Tyre","mesh":2,"translation":[0,3,0]}])");
+    d["scenes"] = {{{"nodes", {0, 1, 2, 3, 4}}}};
+    return maker.glb();
+}
+
+TEST(PartsOfNodes, ThatShareAMaterialAreOneEach) {
+    const Folder folder("nodes");
+    const std::vector<char> bytes = blender_glb();
+    write_file(folder / "in.glb", bytes.data(), bytes.size());
+    const mesh::PolygonSoup soup = read_model(folder / "in.glb");
+    EXPECT_THAT(soup.group_names, ElementsAre("Hood", "Door / Paint", "Door / Glass", "Tyre", "Window", "Tyre 2"));
+    ASSERT_EQ(soup.materials.size(), 6u);
+    for (const std::size_t i : {0u, 1u}) EXPECT_EQ(soup.materials[i].colour, Vec3f(1, 0, 0));
+    for (const std::size_t i : {3u, 5u}) EXPECT_EQ(soup.materials[i].colour, Vec3f(0, 0, 1));
+}
+
+TEST(PartsOfNodes, AreTheSameInWhatIsExported) {
+    const Folder folder("again");
+    for (const bool truck : {false, true}) {
+        const std::vector<char> bytes = truck ? truck_glb() : blender_glb();
+        write_file(folder / "in.glb", bytes.data(), bytes.size());
+        const stroke::Model model = model_of(read_model(folder / "in.glb"));
+        for (const auto& [object, material] : {truck ? std::pair("Body", "Paint") : std::pair("Door", "Paint"),
+                                               truck ? std::pair("Wheel left", "Rubber") : std::pair("Hood", "Paint"),
+                                               truck ? std::pair("Flag", "Flag") : std::pair("Tyre", "Rubber")}) {
+            export_painted(folder / "out.glb", model, ink_on(model, object, material));
+            const mesh::PolygonSoup again = read_model(folder / "out.glb");
+            EXPECT_EQ(again.group_names, model.mesh->group_names) << object;
+            EXPECT_EQ(again.polygon_groups, model.mesh->triangle_groups) << object;
+            const stroke::Model twice = model_of(read_model(folder / "out.glb"));
+            export_painted(folder / "twice.glb", twice, ink_on(twice, object, "decorated"));
+            EXPECT_EQ(read_model(folder / "twice.glb").group_names, model.mesh->group_names) << object;
+        }
+    }
+}
+
+// Another program leaves out what an export says of names.
+TEST(PartsOfNodes, AllPaintedAreStillOneEach) {
+    const Folder folder("painted");
+    put(folder / "m.obj",
+        "v 0 0 0\nv 100 0 0\nv 0 100 0\nv 200 0 0\nv 300 0 0\nv 200 100 0\no Lid\nusemtl a\nf 1 2 3\no Pot\nusemtl "
+        "b\nf 4 5 6\n");
+    const stroke::Model model = model_of(read_model(folder / "m.obj"), 1e-3);
+    export_model(folder / "out.gltf", *model.mesh, model.atlas, pattern_maps(256, true),
+                 {.painted = std::vector<std::uint8_t>{1, 1}});
+    EXPECT_EQ(read_model(folder / "out.gltf").group_names, model.mesh->group_names);
+    const std::vector<char> text = read_file(folder / "out.gltf");
+    json document = json::parse(text.begin(), text.end());
+    for (json& node : document["nodes"]) node.erase("extras");
+    put(folder / "out.gltf", document.dump());
+    EXPECT_THAT(read_model(folder / "out.gltf").group_names, ElementsAre("Lid", "Pot"));
 }
 
 // Groups of colours, and projects made before scenes were kept.

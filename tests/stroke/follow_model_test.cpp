@@ -343,5 +343,38 @@ TEST(FollowModel, AStrokeInSpaceIsPulledOntoASurfaceThatSank) {
     EXPECT_LT(first.z, -2e-3) << "samples above the former surface go with their neighbours";
 }
 
+// A project of a time when the objects of one material were one part.
+TEST(FollowNames, AreThoseThatThePartsHaveToday) {
+    mesh::TriangleMesh former = shell(2, same), revised = former;
+    const auto n = static_cast<std::uint32_t>(former.n_triangles());
+    auto scene = std::make_shared<mesh::SourceScene>();
+    scene->parts = {{.object = "Hood", .material = "Paint", .node = 0, .own_material = 0},
+                    {.object = "Door", .material = "Paint", .node = 1, .own_material = 0},
+                    {.object = "Lamp", .material = "Glass", .node = 2, .own_material = 1}};
+    former.scene = scene;
+    former.group_names = {"Paint", "Glass"};
+    former.materials = {{.colour = Vec3f(1, 0, 0)}, {.colour = Vec3f(0, 1, 0)}};
+    for (std::uint32_t t = 0; t < n; ++t) {
+        former.triangle_parts.push_back(t % 3);
+        former.triangle_groups.push_back(t % 3 / 2);
+        revised.triangle_groups.push_back(t % 3);
+    }
+    revised.group_names = {"Hood", "Door", "Glass"};
+    std::vector<JournalEntry> entries(3);
+    entries[0].content = PartEdit{{{.name = "Glass", .hidden = true}, {.name = "Paint", .locked = true}}};
+    entries[1].content = MaskEdit{.mask = {.kind = MaskKind::group, .groups = {"Paint", "Glass"}}};
+    entries[2].content = Dry{};
+    entries = follow_names(std::move(entries), former, revised);
+    EXPECT_EQ(former.group_names, revised.group_names);
+    EXPECT_EQ(former.triangle_groups, revised.triangle_groups);
+    ASSERT_EQ(former.materials.size(), 3u);
+    EXPECT_EQ(former.materials[1].colour, Vec3f(1, 0, 0));
+    EXPECT_EQ(former.materials[2].colour, Vec3f(0, 1, 0));
+    const PartEdit expected{
+        {{.name = "Door", .locked = true}, {.name = "Glass", .hidden = true}, {.name = "Hood", .locked = true}}};
+    EXPECT_EQ(entries[0].get<PartEdit>(), expected);
+    EXPECT_EQ(entries[1].get<MaskEdit>().mask.groups, (std::vector<std::string>{"Door", "Hood", "Glass"}));
+}
+
 }  // namespace
 }  // namespace tuft::stroke

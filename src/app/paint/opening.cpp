@@ -101,8 +101,8 @@ void copy_strokes(const fs::path& former, bool follow, PaintWork& work, const Pr
     io::use_presets(project, *work.document);
     work.autosave.take_presets(project);
     work.autosave.take_attachments(project);
-    const std::vector<stroke::JournalEntry> strokes = project.strokes();
-    const mesh::TriangleMesh mesh = project.model().mesh;
+    mesh::TriangleMesh mesh = project.model().mesh;
+    const std::vector<stroke::JournalEntry> strokes = stroke::follow_names(project.strokes(), mesh, *work.model->mesh);
     const auto length_of = [&](const std::string& brush) { return work.document->materials().brush(brush).length; };
     const mesh::SurfaceQuery before(mesh);
     const Message fault = stroke::size_fault(strokes, length_of, before, *work.model->query);

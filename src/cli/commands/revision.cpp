@@ -158,6 +158,7 @@ RevisedStrokes replay_strokes(const Replay& a, const OpenProject& project, strok
     find_presets(painting, out.former);
     const mesh::SurfaceQuery &former = former_surface(a, project, painting), &revised = *painting.model().query;
     if (!a.model.empty()) {
+        out.former = stroke::follow_names(std::move(out.former), *project.model.mesh, revised.mesh());
         const Message fault = stroke::size_fault(out.former, lengths_of(painting), former, revised);
         if (!fault.empty()) throw Error(a.model.string(), Message("{} (see --unit)", fault));
         out.change = stroke::find_change(former, revised, freedom_of(a));

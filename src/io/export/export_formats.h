@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/message.h"
-#include "mesh/triangle_mesh.h"
+#include "mesh/part_groups.h"
 
 /// \file
 /// Scene and helpers of the writers of glTF and OBJ. Inside `io` only. Any thread.
@@ -54,7 +54,8 @@ struct ExportScene {
     std::uint32_t page_of(std::size_t triangle) const { return triangle_page.empty() ? 0 : triangle_page[triangle]; }
     /// Name of the decorated material on a page of glTF.
     std::string material_name(std::uint32_t page) const {
-        return udims.size() > 1 ? "decorated." + std::to_string(udims[page]) : "decorated";
+        return udims.size() > 1 ? std::string(mesh::kDecoratedMaterial) + "." + std::to_string(udims[page])
+                                : mesh::kDecoratedMaterial;
     }
 };
 

@@ -21,6 +21,7 @@ namespace {
 
 using nlohmann::json;
 
+constexpr std::size_t kNoPart = static_cast<std::size_t>(-1);
 constexpr int kFloat = 5126, kUnsignedInt = 5125, kUnsignedShort = 5123;
 constexpr int kVertexTarget = 34962, kIndexTarget = 34963;
 
@@ -110,7 +111,10 @@ class Writer {
         const std::vector<std::vector<std::uint32_t>> triangles = triangles_of_parts(scene_);
         std::map<std::int32_t, std::vector<std::size_t>> parts_of;  // by node
         for (std::size_t i = 0; i < scene_.source.parts.size(); ++i) parts_of[scene_.source.parts[i].node].push_back(i);
-        for (const auto& [node, parts] : parts_of) rebuild_node(node, parts, triangles);
+        bool rebuilt = false;
+        for (const auto& [node, parts] : parts_of) rebuilt |= rebuild_node(node, parts, triangles);
+        if (rebuilt && !scene_.mesh.triangle_groups.empty())
+            for (const auto& [node, parts] : parts_of) name_parts(node, parts, triangles);
         prune(document_, before);
     }
 
@@ -304,8 +308,8 @@ class Writer {
     }
 
     /// Gives a node its mesh anew where a part of it has ink, or where the document has no
-    /// triangles.
-    void rebuild_node(std::int32_t index, const std::vector<std::size_t>& parts,
+    /// triangles. Returns whether it did.
+    bool rebuild_node(std::int32_t index, const std::vector<std::size_t>& parts,
                       const std::vector<std::vector<std::uint32_t>>& triangles) {
         json& nodes = list("nodes");
         if (index < 0 || static_cast<std::size_t>(index) >= nodes.size() ||
@@ -315,9 +319,16 @@ class Writer {
             const bool in_document = scene_.source.parts[i].primitive >= 0;
             return triangles[i].empty() || (in_document && !scene_.decorated[i]);
         });
-        if (as_read) return;
+        if (as_read) return false;
         const json old = mesh_of(nodes[static_cast<std::size_t>(index)]);
         json mesh = old, primitives = json::array();
+        std::vector<std::size_t>& parts_here = part_of_primitive_[index];
+        const auto add_part = [&](std::size_t part) {
+            for (json& primitive : primitives_of(part, triangles[part])) {
+                primitives.push_back(std::move(primitive));
+                parts_here.push_back(part);
+            }
+        };
         const json old_primitives = old.value("primitives", json::array());
         std::map<std::size_t, std::size_t> new_of;  // by primitive
         for (const std::size_t i : parts) {
@@ -326,21 +337,50 @@ class Writer {
             if (part.primitive >= 0)
                 new_of[static_cast<std::size_t>(part.primitive)] = i;
             else
-                for (json& primitive : primitives_of(i, triangles[i])) primitives.push_back(std::move(primitive));
+                add_part(i);
         }
         for (std::size_t p = 0; p < old_primitives.size(); ++p) {
             const auto made = new_of.find(p);
-            if (made == new_of.end())
-                primitives.push_back(old_primitives[p]);
-            else
-                for (json& primitive : primitives_of(made->second, triangles[made->second]))
-                    primitives.push_back(std::move(primitive));
+            if (made != new_of.end()) {
+                add_part(made->second);
+                continue;
+            }
+            primitives.push_back(old_primitives[p]);
+            parts_here.push_back(part_at(parts, p));
         }
         for (json& primitive : primitives) primitive.erase("targets");
         mesh.erase("weights");
         mesh["primitives"] = std::move(primitives);
         if (!mesh.contains("name")) mesh["name"] = nodes[static_cast<std::size_t>(index)].value("name", scene_.name);
         put_mesh(static_cast<std::size_t>(index), std::move(mesh));
+        return true;
+    }
+
+    /// The part of a node's primitive in the document, or `kNoPart`.
+    std::size_t part_at(const std::vector<std::size_t>& parts, std::size_t primitive) const {
+        for (const std::size_t i : parts)
+            if (scene_.source.parts[i].primitive == static_cast<std::int32_t>(primitive)) return i;
+        return kNoPart;
+    }
+
+    /// Says in a node how the parts of its primitives are called: their materials are others now.
+    void name_parts(std::int32_t index, const std::vector<std::size_t>& parts,
+                    const std::vector<std::vector<std::uint32_t>>& triangles) {
+        json& node = list("nodes")[static_cast<std::size_t>(index)];
+        auto rebuilt = part_of_primitive_.find(index);
+        if (rebuilt == part_of_primitive_.end()) {
+            rebuilt = part_of_primitive_.try_emplace(index).first;
+            const std::size_t n = mesh_of(node).value("primitives", json::array()).size();
+            for (std::size_t p = 0; p < n; ++p) rebuilt->second.push_back(part_at(parts, p));
+        }
+        json names = json::array();
+        for (const std::size_t part : rebuilt->second) {
+            const bool is_named = part != kNoPart && !triangles[part].empty();
+            names.push_back(is_named ? scene_.mesh.group_names[scene_.mesh.triangle_groups[triangles[part][0]]] : "");
+        }
+        if (names.empty()) return;
+        json& extras = node["extras"];
+        if (extras.is_null() || extras.is_object()) extras[kPartNames] = std::move(names);
     }
 
     json mesh_of(const json& node) const {
@@ -377,6 +417,7 @@ class Writer {
     std::vector<std::uint32_t> local_;                                ///< by wedge: vertex of the primitive in work
     std::map<std::tuple<std::uint32_t, bool, bool>, int> decorated_;  ///< by page, double-sided, glass
     std::map<const EncodedMap*, int> textures_;
+    std::map<std::int32_t, std::vector<std::size_t>> part_of_primitive_;  ///< by node
     std::map<std::int32_t, int> bare_;
     int sampler_ = -1;
 };

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <set>
 #include <span>
 
 #include "core/error.h"
@@ -15,6 +14,7 @@
 #include "io/gltf/gltf_file.h"
 #include "io/scene/materials.h"
 #include "io/scene/scene_document.h"
+#include "mesh/part_groups.h"
 
 namespace fs = std::filesystem;
 
@@ -182,6 +182,7 @@ class Gatherer {
                                                       : Message("has no triangles: {}", soup_.warnings.front()));
         if (!any_uv_) soup_.corner_uvs.clear();
         if (!any_colour_) soup_.point_colours.clear();
+        group_faces();
         drop_plain_materials(soup_);
         keep_scene();
         return std::move(soup_);
@@ -215,6 +216,7 @@ class Gatherer {
             const tinygltf::Primitive& primitive = mesh->primitives[p];
             const tinygltf::Material* material = element(model_.materials, primitive.material);
             mesh::ScenePart part{.object = at && !at->name.empty() ? at->name : mesh->name,
+                                 .group = exported_name(model_.nodes.empty() ? nullptr : at, p),
                                  .material = material ? material->name : "",
                                  .node = node,
                                  .primitive = static_cast<std::int32_t>(p),
@@ -225,20 +227,29 @@ class Gatherer {
         }
     }
 
-    /// Faces of one material, or of one mesh where it has no name.
-    std::uint32_t group_of(const tinygltf::Mesh& mesh, const tinygltf::Primitive& primitive) {
-        const tinygltf::Material* material = element(model_.materials, primitive.material);
-        const std::string name = material && !material->name.empty() ? material->name : mesh.name;
-        const auto [it, is_new] = group_of_.try_emplace({name, material ? primitive.material : -1},
-                                                        static_cast<std::uint32_t>(soup_.group_names.size()));
-        if (is_new) {
-            std::string unlike = name;
-            for (int& n = same_name_[name]; !names_.insert(unlike).second;)
-                unlike = name + " " + std::to_string(n++ + 2);
-            soup_.group_names.push_back(std::move(unlike));
-            soup_.materials.push_back(material ? material_of(*material) : mesh::Material{.tinted = true});
+    /// The groups with faces, and their materials.
+    void group_faces() {
+        const mesh::PartGroups groups = mesh::group_parts(parts_);
+        std::vector<std::uint32_t> group_of(groups.names.size(), kNone);
+        for (const std::uint32_t part : soup_.polygon_parts) {
+            std::uint32_t& group = group_of[groups.of_part[part]];
+            if (group == kNone) {
+                group = static_cast<std::uint32_t>(soup_.group_names.size());
+                soup_.group_names.push_back(groups.names[groups.of_part[part]]);
+                const tinygltf::Material* material = element(model_.materials, parts_[part].own_material);
+                soup_.materials.push_back(material ? material_of(*material) : mesh::Material{.tinted = true});
+            }
+            soup_.polygon_groups.push_back(group);
         }
-        return it->second;
+    }
+
+    /// Name that an export gave a primitive of a node.
+    static std::string exported_name(const tinygltf::Node* node, std::size_t primitive) {
+        if (!node || !node->extras.Has(kPartNames)) return {};
+        const tinygltf::Value& names = node->extras.Get(kPartNames);
+        if (!names.IsArray() || primitive >= names.ArrayLen()) return {};
+        const tinygltf::Value& name = names.Get(static_cast<int>(primitive));
+        return name.IsString() ? name.Get<std::string>() : std::string();
     }
 
     mesh::Material material_of(const tinygltf::Material& material) {
@@ -294,7 +305,6 @@ class Gatherer {
         const std::size_t n = indexed ? indices.count : points.count;
         const std::uint32_t base = add_points(points, world);
         add_colours(primitive, points.count);
-        const std::uint32_t group = group_of(mesh, primitive);
         // A mirroring transform turns the triangles inside out.
         const bool mirrored = glm::determinant(glm::dmat3(world)) < 0;
         const auto index_at = [&](std::size_t i) {
@@ -320,7 +330,6 @@ class Gatherer {
             }
             for (const std::uint32_t i : index) add_corner(base, i, uvs);
             soup_.polygon_start.push_back(static_cast<std::uint32_t>(soup_.corners.size()));
-            soup_.polygon_groups.push_back(group);
             soup_.polygon_parts.push_back(static_cast<std::uint32_t>(parts_.size()) - 1);
         }
         if (dropped > 0)
@@ -403,9 +412,6 @@ class Gatherer {
     std::string name_;
     std::vector<mesh::ScenePart> parts_;
     mesh::PolygonSoup soup_;
-    std::map<std::pair<std::string, int>, std::uint32_t> group_of_;
-    std::set<std::string> names_;           ///< of groups
-    std::map<std::string, int> same_name_;  ///< groups of that name after the first
     std::map<int, std::shared_ptr<const mesh::Picture>> pictures_;
     std::vector<bool> bad_;  ///< [n_points] not finite or out of bounds
     bool any_uv_ = false, any_colour_ = false;

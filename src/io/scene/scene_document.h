@@ -60,4 +60,7 @@ nlohmann::json parse_document(const mesh::SourceScene& scene);
 /// Key of the MTL statements in the document. Exports leave it out.
 inline constexpr const char* kStatements = "tuft_mtl";
 
+/// Key in the extras of a node: names of the parts, one for each primitive of its mesh.
+inline constexpr const char* kPartNames = "tuft_parts";
+
 }  // namespace tuft::io

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <vector>
 
@@ -224,15 +225,24 @@ std::optional<ModelMotion> search_whole(const Side& former, const Side& revised,
     return motion;
 }
 
-bool has_name(const std::vector<std::string>& names, const std::string& name) {
-    return std::ranges::find(names, name) != names.end();
+/// Triangles by the name of their group, ascending.
+std::map<std::string, std::vector<std::uint32_t>> triangles_by_name(const mesh::TriangleMesh& mesh) {
+    std::vector<std::vector<std::uint32_t>> of_group(mesh.group_names.size());
+    for (std::uint32_t t = 0; t < mesh.n_triangles(); ++t) of_group[mesh.triangle_groups[t]].push_back(t);
+    std::map<std::string, std::vector<std::uint32_t>> of_name;
+    for (std::size_t i = 0; i < of_group.size(); ++i) {
+        std::vector<std::uint32_t>& all = of_name[mesh.group_names[i]];
+        const auto middle = static_cast<std::ptrdiff_t>(all.size());
+        all.insert(all.end(), of_group[i].begin(), of_group[i].end());
+        std::inplace_merge(all.begin(), all.begin() + middle, all.end());
+    }
+    return of_name;
 }
 
-/// The triangles of the groups of this name; every other array is empty.
-mesh::TriangleMesh part_of_name(const mesh::TriangleMesh& mesh, const std::string& name) {
+/// These triangles; every other array is empty.
+mesh::TriangleMesh piece_of(const mesh::TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles) {
     mesh::TriangleMesh part;
-    for (std::uint32_t t = 0; t < mesh.n_triangles(); ++t) {
-        if (mesh.group_names[mesh.triangle_groups[t]] != name) continue;
+    for (const std::uint32_t t : triangles) {
         const auto first = static_cast<std::uint32_t>(part.positions.size());
         part.triangles.push_back({first, first + 1, first + 2});
         for (int k = 0; k < 3; ++k) {
@@ -285,9 +295,10 @@ ModelChange find_change(const mesh::SurfaceQuery& former, const mesh::SurfaceQue
     const mesh::TriangleMesh &a = former.mesh(), &b = revised.mesh();
     if (a.triangle_groups.empty() || b.triangle_groups.empty()) return change;
     std::set<std::string> seen;
+    auto was_by_name = triangles_by_name(a), is_by_name = triangles_by_name(b);
     for (const std::string& name : a.group_names) {
-        if (name.empty() || !seen.insert(name).second || !has_name(b.group_names, name)) continue;
-        const mesh::TriangleMesh was = part_of_name(a, name), is = part_of_name(b, name);
+        if (name.empty() || !seen.insert(name).second || !is_by_name.contains(name)) continue;
+        const mesh::TriangleMesh was = piece_of(a, was_by_name[name]), is = piece_of(b, is_by_name[name]);
         if (was.triangles.empty() || is.triangles.empty()) continue;
         if (const auto motion = search_part(was, is, change.whole.value_or(ModelMotion{})))
             change.parts.push_back({name, *motion});
