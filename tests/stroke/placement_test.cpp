@@ -341,9 +341,12 @@ TEST(Placement, TipLagCompensationIsAheadAndTurnsWithThePath) {
     touch = led.samples.size() - points.size();
     EXPECT_NEAR(led.samples[touch + 110].position.x, 0.009, 1e-9);  // the string is slack after one length
     EXPECT_NEAR(led.samples[touch + 200].position.x, -0.003, 1e-9);
-    // A dot has no direction.
-    led = compensate_tip_lag(make_trace({}, {{0.01, 0.02}, {0.01, 0.02}}), options);
-    EXPECT_EQ(led.samples[1].position, Vec3(0.01, 0.02, 0));
+    // A dot is set to the right and down, or to where the holder leans.
+    StrokeSamples dot = make_trace({}, {{0.01, 0.02}, {0.01, 0.02}});
+    const auto gone = [&] { return Vec2(compensate_tip_lag(dot, options).samples.back().position) - Vec2(0.01, 0.02); };
+    EXPECT_LT(glm::distance(gone(), 0.003 * Vec2(std::sqrt(0.5))), 1e-12);
+    for (StrokeSample& s : dot.samples) s.tilt = {0, -0.2};
+    EXPECT_LT(glm::distance(gone(), Vec2(0, -0.003)), 1e-12);
     // No lag: nothing moves.
     led = compensate_tip_lag(trace, {.tip_lag = {}});
     EXPECT_EQ(led.samples[77].position, trace.samples[77].position);

@@ -14,7 +14,9 @@
 
 #include "brush/calibration/sweep.h"
 #include "core/ease.h"
+#include "core/text/units.h"
 #include "sheet.h"
+#include "stroke/drawing/drawing.h"
 #include "stroke/drawing/line_width.h"
 #include "stroke/drawing/plane_ink.h"
 #include "stroke/placement/holder.h"
@@ -413,6 +415,67 @@ TEST(TipLag, ATapIsADropWhereverTheHandDrifts) {
                     hull += in;
                 }
             EXPECT_GT(static_cast<double>(cells.size()), 0.75 * static_cast<double>(hull));
+        }
+}
+
+/// Part of a sphere through the origin, 40 mm wide, hollow where the curvature (1/m) is negative; its normal at the
+/// origin leans by `slope` radians.
+Model dome(double curvature, double slope) {
+    constexpr std::uint32_t n = 24;
+    const Frame frame = make_frame(Vec3(0), {std::sin(slope), 0, std::cos(slope)});
+    mesh::PolygonSoup soup;
+    for (std::uint32_t j = 0; j <= n; ++j)
+        for (std::uint32_t i = 0; i <= n; ++i) {
+            const double x = 0.04 * (i / double(n) - 0.5), y = 0.04 * (j / double(n) - 0.5), rr = x * x + y * y;
+            const double z = -curvature * rr / (1 + std::sqrt(1 - curvature * curvature * rr));
+            soup.points.push_back(frame.to_world({x, y, z}) / kMillimetre);
+        }
+    for (std::uint32_t j = 0; j < n; ++j)
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const std::uint32_t a = j * (n + 1) + i;
+            soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
+            soup.corners.insert(soup.corners.end(), {a, a + 1, a + n + 2, a + n + 1});
+        }
+    soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
+    ModelOptions options;
+    options.unwrap.size = 256;
+    return prepare_model(soup, options);
+}
+
+/// Mean place of the ink of a dot that is set at the origin, metres.
+Vec3 place_of_dot(const Model& model, const Vec3& normal, const std::string& brush, double pressure, bool pressed) {
+    PaintStroke s;
+    s.brush = brush;
+    s.ink = "carbon";
+    s.trace.placement = upright_placement(Vec3(0), normal, 0);
+    s.trace.placement.mapping = SurfaceMapping::drape;
+    for (int i = 0; i <= 20; ++i)
+        s.trace.samples.push_back({.time = 0.01 * i, .pressure = pressure * (pressed ? 1 : 1 - std::abs(0.1 * i - 1))});
+    Document painting(model);
+    painting.paint(s);
+    Vec3 sum(0);
+    double all = 0;
+    const ink::Canvas& canvas = painting.layers().canvas();
+    for (const std::uint32_t slot : canvas.touched_slots())
+        if (const ink::Plane* plane = canvas.plane(slot, 0))
+            for (int t = 0; t < atlas::kTileTexels; ++t) {
+                const double amount = (*plane)[t] * static_cast<double>(model.texels.tiles[slot].area[t]);
+                if (amount > 0) all += amount, sum += amount * Vec3(model.texels.position(slot, t));
+            }
+    return sum / all;
+}
+
+// Pressed down plumb the hair lay 1.5 mm to one side on a plane, and to any side where the surface bends.
+TEST(TipLag, ADotLiesWhereItIsSetOnAnySlope) {
+    for (const double curvature : {0.0, 1 / 0.075, -1 / 0.075})
+        for (const double slope : {0.0, 0.5 * std::numbers::pi}) {
+            const Model model = dome(curvature, slope);
+            const Vec3 normal{std::sin(slope), 0, std::cos(slope)};
+            for (const bool pressed : {false, true}) {
+                const Vec3 off = place_of_dot(model, normal, "wolf-small", 0.3, pressed);
+                EXPECT_LT(glm::length(off - glm::dot(off, normal) * normal), 0.3e-3)
+                    << curvature << ' ' << slope << ' ' << pressed;
+            }
         }
 }
 

@@ -70,6 +70,21 @@ const PlaneInk::Tile* PlaneInk::tile(std::int64_t i, std::int64_t j, std::size_t
     return found == tiles_.end() ? nullptr : &found->second;
 }
 
+// Whole numbers: the order of the tiles does not matter.
+std::optional<Vec2> PlaneInk::centre() const {
+    std::int64_t sum = 0, x = 0, y = 0;
+    for (const auto& [key, tile] : tiles_) {
+        const auto i = static_cast<std::int64_t>(static_cast<std::int32_t>(key >> 32)) * kTile;
+        const auto j = static_cast<std::int64_t>(static_cast<std::int32_t>(key & 0xFFFFFFFFu)) * kTile;
+        for (int k = 0; k < kTile * kTile; ++k) {
+            const std::int64_t c = tile.coverage[static_cast<std::size_t>(k)];
+            sum += c, x += c * (i + k % kTile), y += c * (j + k / kTile);
+        }
+    }
+    if (sum == 0) return std::nullopt;
+    return cell_ * (Vec2(static_cast<double>(x), static_cast<double>(y)) / static_cast<double>(sum) + 0.5);
+}
+
 double PlaneInk::value(std::int64_t i, std::int64_t j) const {
     std::size_t cell = 0;
     const Tile* t = tile(i, j, cell);
@@ -189,6 +204,18 @@ void PlaneDrawing::add_stamp(const brush::Pose& pose, double dt, PlaneInk& ink) 
 PlaneInk plane_ink(const StrokeSamples& trace, const brush::Preset& preset, const HolderOptions& options, double step,
                    double cell) {
     return PlaneDrawing(preset, options, step, cell).draw(trace);
+}
+
+Vec2 middle_of_dot(const StrokeSamples& dot, const brush::Preset& preset, HolderOptions options) {
+    constexpr double kSteps = 60, kCells = 20;  // to the tuft's length; to its radius
+    options.dot_place = nullptr;
+    const std::optional<Vec2> ink =
+        plane_ink(dot, preset, options, preset.length / kSteps, preset.radius / kCells).centre();
+    if (!ink) return Vec2{0};
+    Vec2 sum{0};
+    double pressed = 0;
+    for (const StrokeSample& s : dot.samples) sum += s.pressure * Vec2(s.position), pressed += s.pressure;
+    return Vec2{ink->x, -ink->y} - (pressed > 0 ? sum / pressed : Vec2(dot.samples.front().position));
 }
 
 }  // namespace tuft::stroke

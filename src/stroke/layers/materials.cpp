@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ink/composite/match.h"
+#include "stroke/drawing/plane_ink.h"
 
 namespace tuft::stroke {
 
@@ -64,6 +65,9 @@ HolderOptions Materials::holder(const std::string& name, const mesh::TriangleMes
     options.tip_lag = brush.tip_lag->as_held();
     options.tip_lag_change = [tilted = brush.tip_lag.get()](double depth, const Vec2& lean, double turn) {
         return tilted->at(depth, lean, turn);
+    };
+    options.dot_place = [preset = brush.preset, plain = options](const StrokeSamples& dot) {
+        return middle_of_dot(dot, preset, plain);
     };
     return options;
 }

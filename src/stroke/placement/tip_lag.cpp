@@ -281,8 +281,8 @@ bool set_down(StrokeSamples& trace, const HolderOptions& options, const Vec2& ah
     constexpr double kTouch = 1e-6;       // of the pressure: the tip is down from the first sample
     const StrokeSample first = trace.samples.front();
     if (!(tip_lag_length(options.tip_lag, depth_of(options, first.pressure)) > 0)) return false;
-    const double pace = first_pace(trace.samples, kPaceLength);
-    if (!(pace > 0)) return false;
+    if (ahead == Vec2(0)) return false;
+    const double pace = first_pace(trace.samples, kPaceLength);  // of a dot none
     // Metres that the foot of the holder goes, ahead and down, up to each pressure.
     std::vector<double> gone{0};
     Vec3 foot{0};
@@ -339,13 +339,29 @@ double angle_of(const Vec2& ahead) {
     return std::atan2(-ahead.y, ahead.x);
 }
 
-/// Direction in which a hand sets out; where its trace does not leave the first place, hair that bends across its broad
-/// side is set down towards the side that the holder leans to, or y.
+/// Direction of a hand that sets a dot: towards the side that the holder leans to; upright, of a wide ferrule y, of a
+/// round one to the right and down, as a right hand goes. Zero for a blade, which is led along its line.
+Vec2 dot_direction(const StrokeSample& first, const HolderOptions& options) {
+    if (options.blade_landing > 0) return Vec2{0};
+    if (options.across || options.turned) {
+        const Vec2 across = across_of(first.roll);
+        return glm::dot(first.tilt, across) < 0 ? -across : across;
+    }
+    return glm::length(first.tilt) > kLeansNot ? glm::normalize(first.tilt) : Vec2(std::numbers::sqrt2 / 2);
+}
+
+/// Direction in which a trace sets out; zero of a dot, which does not leave its first place.
+Vec2 trace_direction(std::span<const StrokeSample> samples, const HolderOptions& options) {
+    return first_direction(samples, kAiming * options.tip_lag_turn);
+}
+bool is_dot(std::span<const StrokeSample> samples, const HolderOptions& options) {
+    return trace_direction(samples, options) == Vec2(0);
+}
+
+/// Direction in which a hand sets out.
 Vec2 sets_out(std::span<const StrokeSample> samples, const HolderOptions& options) {
-    const Vec2 ahead = first_direction(samples, kAiming * options.tip_lag_turn);
-    if (ahead != Vec2(0) || !options.across) return ahead;
-    const Vec2 across = across_of(samples.front().roll);
-    return glm::dot(samples.front().tilt, across) < 0 ? -across : across;
+    const Vec2 ahead = trace_direction(samples, options);
+    return ahead != Vec2(0) ? ahead : dot_direction(samples.front(), options);
 }
 
 }  // namespace
@@ -370,12 +386,14 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     // The hand knows where it is going to start: the string is taut from the first touch.
     const Vec2 first(trace.samples.front().position);
     const Vec2 ahead = sets_out(trace.samples, options);
+    const bool dot = is_dot(trace.samples, options);
+    const Vec2 off = dot && options.dot_place ? options.dot_place(trace) : Vec2{0};
     const bool pressed = set_down(trace, options, ahead);
     set_down_plumb(trace, options);
     // Over a convex surface a blade's point meets ground that falls ahead of it, however softly it lands: it would
     // slide on ahead of the hand and fall to its side.
     const bool leans = options.lean > kLean && glm::dot(trace.samples.front().tilt, ahead) > kLean;
-    if ((pressed || options.blade_landing > 0) && ahead != Vec2(0) && !leans) lean_ahead(trace, options, ahead);
+    if ((pressed || dot || options.blade_landing > 0) && ahead != Vec2(0) && !leans) lean_ahead(trace, options, ahead);
     Vec2 dragged = first - options.tip_lag_turn * ahead, before = first;
     FollowedTurn turn(options.tuft_length, trace.samples.front().roll - angle_of(ahead));
     BladeRoll blade(options.tip_lag_turn, trace.samples.front().roll);
@@ -391,7 +409,7 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
         const double turned = turn.follow(s.roll - angle_of(towards), gone);
         const double roll = options.turned ? turned + angle_of(towards) : s.roll;
         before = p;
-        s.position = Vec3(p + tip_lag_at(options, s.pressure, s.tilt, roll, towards), s.position.z);
+        s.position = Vec3(p - off + tip_lag_at(options, s.pressure, s.tilt, roll, towards), s.position.z);
     }
     return trace;
 }
