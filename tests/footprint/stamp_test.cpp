@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <map>
@@ -141,6 +142,41 @@ TEST(Stamp, HairDrawnSidewaysInksAllThatItPassesOver) {
             EXPECT_LT(outside, 0.01) << travel << " " << angle;
         }
     }
+}
+
+// Between them are lines and cells without hair, which cost nothing.
+TEST(Stamp, WhatHairsPassOverIsTheUnionOfWhatEachOneDoes) {
+    Stage stage(testing::sheet(0.06, 2, 200));
+    const double texel = 0.06 / 400;
+    Footprint f = disc(make_frame({0.003, 0.002, 0}, {0, 0, 1}), 0, 50 * texel, 0.5 * texel);
+    f.triangle = stage.triangle_at(f.frame.origin);
+    constexpr int kApart = 90;  // cells, more than a hair and its way: each cell meets one hair
+    ASSERT_GT(std::min(f.width, f.height), 2 * kApart);
+    const auto picture = [&](int from, int to) {
+        Footprint hairs = f;
+        std::ranges::fill(hairs.coverage, std::uint8_t{0});
+        for (int k = from; k < to; ++k)
+            for (int j = 0; j < 7; ++j)
+                for (int i = 0; i < 3; ++i)
+                    hairs.coverage[std::size_t(10 + kApart * (k / 2) + j) * f.width + 7 + kApart * (k % 2) + i] = 200;
+        return hairs;
+    };
+    for (const double travel : {0.4, 5.3, 30.0})
+        for (const double angle : {0.0, 0.3, 1.2, kPi / 2, 2.5, 4.1}) {
+            const Motion motion{travel * texel * Vec2{std::cos(angle), std::sin(angle)}, 0};
+            std::vector<float> together(stage.map.n_slots() * atlas::kTileTexels), each = together;
+            const auto add = [&](const Footprint& hairs, std::vector<float>& most) {
+                const StampJobs jobs = stage.plan(hairs, motion, {.max_weight = 1});
+                for_exposed(stage, jobs, [&](std::uint32_t s, int t, float e) {
+                    float& at = most[atlas::kTileTexels * s + t];
+                    at = std::max(at, e);
+                });
+            };
+            for (int k = 0; k < 4; ++k) add(picture(k, k + 1), each);
+            add(picture(0, 4), together);
+            EXPECT_GT(std::ranges::max(together), 0.4) << travel << " " << angle;
+            EXPECT_EQ(together, each) << travel << " " << angle;
+        }
 }
 
 TEST(Stamp, ATurnAboutTheOriginSweepsTheAngle) {

@@ -24,19 +24,22 @@ TUFT_CLONES void column_bits(const std::array<const std::uint8_t*, 4>& rows, int
     }
 }
 
-/// Eight rows of eight cells become columns: corners change places, in squares of 4, of 2 and of 1.
+constexpr int kSquare = 16;  // cells along the side of a square that is transposed at once
+
+/// Sixteen rows of sixteen cells become columns: rows k and k + 8 are interleaved four times.
 void transpose_square(const std::uint8_t* in, std::ptrdiff_t next_in, std::uint8_t* out, std::ptrdiff_t next_out) {
-    std::uint64_t row[8];
-    for (int k = 0; k < 8; ++k) std::memcpy(&row[k], in + k * next_in, 8);
-    const auto swap = [](std::uint64_t& a, std::uint64_t& b, int shift, std::uint64_t low) {
-        const std::uint64_t t = ((a >> shift) ^ b) & low;
-        a ^= t << shift;
-        b ^= t;
+    using Cells [[gnu::vector_size(kSquare)]] = std::uint8_t;
+    Cells a[kSquare], b[kSquare];
+    for (int k = 0; k < kSquare; ++k) std::memcpy(&a[k], in + k * next_in, sizeof a[k]);
+    const auto interleave = [](const Cells* from, Cells* to) {
+        for (int k = 0; k < kSquare / 2; ++k) {
+            const Cells &p = from[k], &q = from[k + kSquare / 2];
+            to[2 * k] = __builtin_shufflevector(p, q, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+            to[2 * k + 1] = __builtin_shufflevector(p, q, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
+        }
     };
-    for (const int k : {0, 1, 2, 3}) swap(row[k], row[k + 4], 32, 0x00000000ffffffffu);
-    for (const int k : {0, 1, 4, 5}) swap(row[k], row[k + 2], 16, 0x0000ffff0000ffffu);
-    for (const int k : {0, 2, 4, 6}) swap(row[k], row[k + 1], 8, 0x00ff00ff00ff00ffu);
-    for (int k = 0; k < 8; ++k) std::memcpy(out + k * next_out, &row[k], 8);
+    interleave(a, b), interleave(b, a), interleave(a, b), interleave(b, a);
+    for (int k = 0; k < kSquare; ++k) std::memcpy(out + k * next_out, &a[k], sizeof a[k]);
 }
 
 constexpr int kLanes = 16;
@@ -136,18 +139,19 @@ Cover Discs::cover(std::size_t i) const {
 }
 
 void transpose(std::span<const std::uint8_t> cells, int width, int height, Recycled<std::uint8_t>& turned) {
-    constexpr int kSide = 8;
     turned.resize(static_cast<std::size_t>(width) * height);
     const auto in = [&](int x, int y) { return cells.data() + static_cast<std::ptrdiff_t>(y) * width + x; };
     const auto out = [&](int x, int y) { return turned.data() + static_cast<std::ptrdiff_t>(x) * height + y; };
-    for (int y = 0; y < height; y += kSide)
-        for (int x = 0; x < width; x += kSide) {
-            if (x + kSide <= width && y + kSide <= height) {
-                transpose_square(in(x, y), width, out(x, y), height);
-                continue;
-            }
-            for (int j = y; j < std::min(y + kSide, height); ++j)
-                for (int i = x; i < std::min(x + kSide, width); ++i) *out(i, j) = *in(i, j);
+    if (width < kSquare || height < kSquare) {
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) *out(x, y) = *in(x, y);
+        return;
+    }
+    // The last squares of a row and of a column of them overlap those before.
+    for (int row = 0; row < height; row += kSquare)
+        for (int column = 0; column < width; column += kSquare) {
+            const int x = std::min(column, width - kSquare), y = std::min(row, height - kSquare);
+            transpose_square(in(x, y), width, out(x, y), height);
         }
 }
 
