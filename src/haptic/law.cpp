@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/first_order_lag.h"
+
 namespace tuft::haptic {
 namespace {
 
@@ -256,7 +258,7 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     const Vec3 moved = in.arm - s.arm.position, turned = turn_between(s.arm.rotation, in.rotation);
     s.sent.delay = static_cast<std::size_t>(std::clamp(std::ceil(options.delay / T - 1e-9), 0.0, kMostDelayed));
     settle_tank(options, s, in);
-    const double passed = 1 - std::exp(-T / kVelocityTime);
+    const double passed = settled_part(T, kVelocityTime);
     s.arm.velocity += (moved / T - s.arm.velocity) * passed;
     s.arm.velocity_before += (s.arm.velocity - s.arm.velocity_before) * passed;
     s.arm.position = in.arm;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "brush/calibration/sweep.h"
+#include "core/ease.h"
 #include "core/text/units.h"
 #include "ink/spectra/srgb.h"
 #include "stroke/document/document.h"
@@ -27,8 +28,7 @@ constexpr int kSamples = 160;
 
 /// Goes from 0 at `a` to 1 at `b` without a kink.
 double rise(double a, double b, double at) {
-    const double t = std::clamp((at - a) / (b - a), 0.0, 1.0);
-    return t * t * (3 - 2 * t);
+    return smooth_step((at - a) / (b - a));
 }
 
 /// A flat sheet whose texels are `texel` metres; the middle of the picture is its origin, x to the right, y up.

@@ -61,7 +61,6 @@ std::string pigment_key(std::string name);
 /// Loads recent colours and saved inks of earlier runs from `state_folder()`. Skips what cannot be read.
 void load_colours(ColourChoice& choice);
 /// Puts a colour first among the recent ones and saves the list.
-/// Puts a colour first among the recent ones.
 void remember_colour(ColourChoice& choice, const std::string& hex);
 /// Saves an ink under its name for all projects. Throws `Error` where it cannot be written.
 void save_own_ink(ColourChoice& choice, ink::Ink ink);

@@ -7,6 +7,7 @@
 
 #include "brush/tuft/ferrule.h"
 #include "core/ease.h"
+#include "core/first_order_lag.h"
 #include "stroke/placement/surface_mapping.h"
 
 namespace tuft::app {
@@ -45,10 +46,6 @@ constexpr double kLightly = 0.2, kOverAnEdge = 0.08;
 constexpr double kWall = 0.25, kLip = 0.55;  // radians from the mean normal: of a wall beside a lip at most, of a lip
 constexpr double kAhead = 0.5;       // of the radius that a holder levels: how far ahead the ground is looked at
 constexpr double kSameGround = 1.5;  // radii round the aim in which a place belongs to the ground that a holder levels
-
-double part(double dt, double constant) {
-    return 1.0 - std::exp(-dt / std::max(constant, 1e-6));
-}
 
 Vec3 facing(const mesh::SurfacePoint& p, const Aim& aim) {
     return glm::dot(p.normal, aim.ray.direction) < 0 ? p.normal : -p.normal;
@@ -414,18 +411,19 @@ void PointerInput::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, 
         }
         // Low-pass of a goal that moves evenly, solved exactly: y' = (x - y) / τ, x' = pace.
         const Vec3 behind = target - settings_.smoothing * pace;
-        point_.position = behind + (1 - part(dt, settings_.smoothing)) * (point_.position - behind + pace * dt);
+        point_.position = behind + (1 - settled_part(dt, settings_.smoothing)) * (point_.position - behind + pace * dt);
         const bool leans_ahead = glm::dot(normal - point_.normal, dragged_.string) > 0;
         const double constant = std::max(0.01, settings_.smoothing) * (leans_ahead ? 1 - at_start() : 1);
-        point_.normal = glm::normalize(point_.normal + part(dt, constant) * (normal - point_.normal));
+        point_.normal = glm::normalize(point_.normal + settled_part(dt, constant) * (normal - point_.normal));
         onto_surface();
         drag(aim);
         turn_holder(aim, point_.position - before);
         motion_.gone += glm::distance(before, point_.position);
         const double v = glm::distance(before, point_.position) / dt;
-        motion_.speed += part(dt, 0.05) * (v - motion_.speed);
+        motion_.speed += settled_part(dt, 0.05) * (v - motion_.speed);
         motion_.rest = motion_.speed < 0.004 ? motion_.rest + dt : 0;
-        motion_.pressure += part(dt, aim.pressure >= 0 ? 0.004 : kRise) * (goal_pressure(aim) - motion_.pressure);
+        motion_.pressure +=
+            settled_part(dt, aim.pressure >= 0 ? 0.004 : kRise) * (goal_pressure(aim) - motion_.pressure);
         motion_.time += dt;
         poses.push_back(pose_at(aim, point_.position, point_.normal, motion_.pressure, motion_.time));
     }

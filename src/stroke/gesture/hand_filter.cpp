@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/first_order_lag.h"
 #include "stroke/gesture/roll.h"
 #include "stroke/gesture/tractrix.h"
 
@@ -18,7 +19,7 @@ double time_constant(double cutoff) {
 
 // Part of the distance to a constant goal that a low-pass goes in dt.
 double share(double cutoff, double dt) {
-    return -std::expm1(-dt / time_constant(cutoff));
+    return settled_part(dt, time_constant(cutoff));
 }
 
 // A low-pass y of a signal that goes evenly from x0 to x1 in dt, solved exactly: y' = (x - y) / τ.

@@ -7,8 +7,7 @@
 
 /// \file
 /// Filters of a hand's samples as they arrive: a low-pass that follows fast motion (smoothing), and a string that pulls
-/// the tip (stabiliser). Called by hand.h and by the studio's pointer. States are plain structs; the same samples give
-/// the same bits.
+/// the tip (stabiliser). Called by hand.h. States are plain structs; the same samples give the same bits.
 namespace tuft::stroke {
 
 /// One-Euro filter [Casiez2012]: exponential smoothing whose cutoff

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/first_order_lag.h"
 
 namespace tuft::stroke {
 namespace {
@@ -15,11 +16,6 @@ constexpr double kBackShare = 0.6;    // of the taper that the lifting hand goes
 constexpr double kLift = 0.06;        // seconds of it
 constexpr int kLiftSamples = 8;
 constexpr double kLook = 0.03;  // seconds of the trace that give its first speed
-
-// Part of the distance to its goal that a first-order lag goes in dt.
-double settled_part(double dt, double constant) {
-    return -std::expm1(-dt / std::max(constant, 1e-6));
-}
 
 double goal_of(const PressureState& s, const PressureOptions& o) {
     double goal = o.level;

@@ -7,8 +7,8 @@
 #include "stroke/journal/entry/settings.h"
 
 /// \file
-/// Pressure from motion, for devices that measure none: a mouse, a finger, a drawing. Called by hand.h and by the
-/// studio's pointer.
+/// Pressure from motion, for devices that measure none: a mouse, a finger, a drawing. Called by hand.h. The pointer of
+/// the window has a law of its own, by fewer settings (app/input/pointer_input.h).
 namespace tuft::stroke {
 
 /// Pressure p of a hand with speed v and rest q:
