@@ -26,6 +26,10 @@ Vec3 up_of(const brush::Pose& pose) {
     return -pose.axis();
 }
 
+double lean_of(const brush::Pose& pose) {
+    return std::acos(std::clamp(up_of(pose).z, -1.0, 1.0));
+}
+
 /// Returns where the holder is inside the model at a pose, if it is.
 std::optional<Vec3> hit_of_holder(const mesh::SurfaceQuery& query, const Holder& holder, const brush::Pose& pose) {
     for (double s = holder.radius + kFree; s < holder.length; s += holder.radius) {
@@ -223,6 +227,19 @@ class Planner {
 const char* name_of(MoveKind kind) {
     constexpr const char* kNames[] = {"approach", "stroke", "retract", "travel"};
     return kNames[static_cast<int>(kind)];
+}
+
+double make_upright(StrokePath& stroke) {
+    double most = 0;
+    for (const Waypoint& p : stroke.points) most = std::max(most, lean_of(p.pose));
+    if (most > kMostStraightened) return most;
+    for (Waypoint& p : stroke.points) {
+        const Vec3 up = up_of(p.pose), z(0, 0, 1), about = glm::cross(up, z);
+        const double sine = glm::length(about);
+        p.pose.position += stroke.tuft_length * (z - up);
+        if (sine > 0) p.pose.rotation = glm::normalize(glm::angleAxis(lean_of(p.pose), about / sine) * p.pose.rotation);
+    }
+    return most;
 }
 
 Trajectory plan(const mesh::SurfaceQuery& query, const std::vector<StrokePath>& strokes, const MotionOptions& options) {

@@ -19,6 +19,16 @@ struct StrokePath {
     double tuft_radius = 0.004;    ///< metres
 };
 
+/// Lean from the vertical up to which `make_upright` takes a holder, radians: more than a stroke drawn by lines has,
+/// whose brush is set down ahead of its path.
+inline constexpr double kMostStraightened = 0.2;
+
+/// Stands the holder upright over a flat sheet, z up, for a machine that cannot lean it. The tip of the unbent tuft
+/// stays where it is, and the holder keeps its rotation about its axis but for the turn that takes the axis to the
+/// vertical the shortest way. A stroke in which it leans by more than `kMostStraightened` stays as it is. Returns the
+/// greatest lean of the stroke as it was, radians.
+double make_upright(StrokePath& stroke);
+
 /// The holder behind the ferrule: a cylinder about its axis, with round ends, from the mouth backwards.
 struct Holder {
     double radius = 0.006;  ///< metres

@@ -211,6 +211,21 @@ TEST_F(Trajectories, AreWrittenInEachLanguageAndRefusedWhereTheHolderHits) {
         EXPECT_EQ(tuft("trajectory " + project + " -o " + path("b.json") + " " + options).status, 2) << options;
 }
 
+// The brush of a drawn line is set down leaning; a plotter stands it upright.
+TEST_F(Trajectories, OfADrawingOnASheetAreWrittenForAPlotter) {
+    std::ofstream(path("line.svg")) << R"(<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="20mm"
+        viewBox="0 0 40 20"><path d="M5 10 Q20 2 35 10" fill="none" stroke="black" stroke-width="1"/></svg>)";
+    const std::string project = path("line.tuft");
+    const test::Ran painted = tuft("paint " + model("sheet.ply") + " --strokes " + path("line.svg") +
+                                   " --place 0,0,0 --atlas-size 512 --areas brush --quiet --project " + project);
+    ASSERT_EQ(painted.status, 0) << painted.err;
+    const test::Ran ran = tuft("trajectory " + project + " -o " + path("line.gcode"));
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_TRUE(std::regex_search(ran.err, std::regex("leans of up to [0-9]+ degrees in 1 stroke are left out")))
+        << ran.err;
+    EXPECT_GT(fs::file_size(path("line.gcode")), 500u);
+}
+
 // A drawing whose lines are filled as areas has no path of a brush: it is said how it gets one.
 TEST_F(Trajectories, OfFilledAreasNameTheOptionThatPaintsThemByStrokes) {
     write("d.svg",

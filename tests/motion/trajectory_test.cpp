@@ -55,6 +55,29 @@ Most differences(const std::vector<Waypoint>& points) {
     return most;
 }
 
+// A plotter cannot lean its brush: the tip stays, the axis is vertical, and about it the holder turns as it did.
+TEST(Upright, KeepsTheTipAndTheTurnOfTheHolder) {
+    StrokePath stroke{.id = 1, .label = "line", .points = {}, .tuft_length = 0.03, .tuft_radius = 0.003};
+    std::vector<Vec3> tips;
+    for (int i = 0; i < 20; ++i) {
+        const double lean = 0.15 * std::cos(0.3 * i), towards = 0.7 * i, turn = 0.2 * i;
+        const Quat rotation =
+            glm::angleAxis(lean, Vec3(std::cos(towards), std::sin(towards), 0)) * glm::angleAxis(turn, Vec3(0, 0, 1));
+        stroke.points.push_back({{Vec3(1e-3 * i, 2e-3 * i, 0.025), rotation, 0.1 * i}});
+        tips.push_back(stroke.points.back().pose.position + 0.03 * stroke.points.back().pose.axis());
+    }
+    EXPECT_NEAR(make_upright(stroke), 0.15, 1e-12);
+    for (std::size_t i = 0; i < tips.size(); ++i) {
+        const brush::Pose& pose = stroke.points[i].pose;
+        EXPECT_LT(glm::length(pose.position + 0.03 * pose.axis() - tips[i]), 1e-15);
+        EXPECT_LT(angle_between(pose.rotation, glm::angleAxis(0.2 * static_cast<double>(i), Vec3(0, 0, 1))), 1e-7);
+    }
+    StrokePath slanted = stroke;
+    slanted.points[3].pose.rotation = glm::angleAxis(0.3, Vec3(1, 0, 0));
+    EXPECT_NEAR(make_upright(slanted), 0.3, 1e-12);
+    EXPECT_EQ(slanted.points[3].pose.rotation, glm::angleAxis(0.3, Vec3(1, 0, 0)));
+}
+
 TEST(Retime, KeepsTheLimitsByFiniteDifferences) {
     for (const Limits limits : {Limits{}, Limits{0.02, 0.1, 0.5}, Limits{1, 20, 10}}) {
         std::vector<Waypoint> points = wave(0, 2, 150, 0.5).points;

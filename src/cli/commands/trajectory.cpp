@@ -102,6 +102,23 @@ Painted paint_strokes(const std::vector<stroke::JournalEntry>& entries, stroke::
     return painted;
 }
 
+/// Stands the holders upright for a plotter, and says so.
+void make_upright(std::vector<motion::StrokePath>& strokes, Console& console) {
+    constexpr double kSaid = 1 * kDegree;
+    std::size_t leaning = 0;
+    double most = 0;
+    for (motion::StrokePath& stroke : strokes) {
+        const double lean = motion::make_upright(stroke);
+        if (lean < kSaid || lean > motion::kMostStraightened) continue;
+        ++leaning;
+        most = std::max(most, lean);
+    }
+    if (leaning > 0)
+        console.note(
+            fmt::format("warning: G-code holds the brush upright: leans of up to {} degrees in {} are left out",
+                        std::lround(most / kDegree), counted(leaning, "stroke")));
+}
+
 std::string program_name(const std::filesystem::path& path) {
     std::string name = path.stem().string();
     for (char& c : name)
@@ -140,6 +157,7 @@ int run(const TrajectoryWork& a) {
             fmt::format("warning: {} of {} are painted within stencils, which a trajectory does not hold: without "
                         "masking tape their ink goes over the edges of filled shapes",
                         painted.within_stencils, counted(painted.strokes.size(), "stroke")));
+    if (io::is_gcode(a.output)) make_upright(painted.paths, console);
     io::MotionProgram program;
     program.limits = {a.max_speed_mm / 1000, a.max_acceleration_mm / 1000, kDegree * a.max_turn_deg};
     program.trajectory = motion::plan(*project->model.query, painted.paths,

@@ -53,6 +53,8 @@ std::string urscript_text(const MotionProgram& program);
 std::string rapid_text(const MotionProgram& program);
 std::string krl_text(const MotionProgram& program);
 std::string gcode_text(const MotionProgram& program);
+/// Whether `write_trajectory` writes a file of this name in G-code.
+bool is_gcode(const std::filesystem::path& path);
 
 /// Returns the strokes of a trajectory in JSON or CSV (by the extension), in space, with what they are painted with.
 /// Their times are the hand's, which the file has beside the tool's: hair trails by its speed, and a tool that keeps

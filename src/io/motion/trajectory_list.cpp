@@ -100,6 +100,11 @@ std::string trajectory_json(const MotionProgram& program) {
     return file.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
+bool is_gcode(const std::filesystem::path& path) {
+    const std::string extension = lower_extension(path);
+    return extension == ".gcode" || extension == ".nc";
+}
+
 void write_trajectory(const std::filesystem::path& path, const MotionProgram& program) {
     const std::string extension = lower_extension(path);
     if (extension == ".json") return write_text(path, trajectory_json(program));
@@ -107,7 +112,7 @@ void write_trajectory(const std::filesystem::path& path, const MotionProgram& pr
     if (extension == ".urscript" || extension == ".script") return write_text(path, urscript_text(program));
     if (extension == ".mod") return write_text(path, rapid_text(program));
     if (extension == ".src") return write_text(path, krl_text(program));
-    if (extension == ".gcode" || extension == ".nc") return write_text(path, gcode_text(program));
+    if (is_gcode(path)) return write_text(path, gcode_text(program));
     throw Error(path.string(), "a trajectory is written as .json, .csv, .urscript, .mod, .src or .gcode");
 }
 
