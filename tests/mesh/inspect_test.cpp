@@ -64,6 +64,13 @@ TEST(Inspect, ReportsSizeAndNoDefectsOfASoundBox) {
     EXPECT_THAT(lines, Contains("size 100 x 200 x 50.0 mm, area 700 cm², volume 1000 cm³"));
     EXPECT_THAT(lines, Contains("1 part, closed"));
     EXPECT_THAT(lines, Contains("no defects"));
+    EXPECT_THAT(lines, Not(Contains(HasSubstr("tuft decimate"))));
+}
+
+TEST(Inspect, OffersALightCopyOfALargeScan) {
+    MeshSummary m = summarise(build_surface(make_box(Vec3(0), Vec3(100, 200, 50))), 1e-3);
+    m.n_triangles = 20'000'000;
+    EXPECT_THAT(describe(m), Contains(HasSubstr("'tuft decimate' makes a light copy")));
 }
 
 TEST(Inspect, ReportsEveryDefectOnce) {

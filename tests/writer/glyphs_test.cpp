@@ -7,8 +7,10 @@
 
 #include "core/error.h"
 #include "core/files/files.h"
+#include "io/font/installed_fonts.h"
 #include "writer/gesture/stroke_line.h"
 #include "writer/glyphs/glyph_source.h"
+#include "writer/glyphs/outline_font.h"
 
 namespace tuft::writer {
 namespace {
@@ -98,6 +100,20 @@ TEST(LineFont, OpenPathsAreStrokesInUnitsOfTheEm) {
     EXPECT_TRUE(font[0].single_line);
     EXPECT_EQ(font[0].advance, 250);
     EXPECT_EQ(font[0].strokes[1].median.back(), Vec2(250, 256));
+}
+
+// By the name of its family an installed font gives the characters of its file, and what is none is named.
+TEST(OutlineFont, IsFoundByTheNameOfItsFamily) {
+    const io::InstalledFont installed = io::find_font({.families = {"sans-serif"}});
+    if (installed.file.empty()) GTEST_SKIP() << "no font is installed";
+    const auto named = open_glyphs(installed.family)->find(U'R'),
+               of_file = open_outline_font(installed.file, installed.face)->find(U'R');
+    ASSERT_TRUE(named && of_file);
+    EXPECT_EQ(named->advance, of_file->advance);
+    ASSERT_FALSE(named->area.empty());
+    EXPECT_EQ(named->area, of_file->area);
+    for (const char* name : {"No Such Family Of Letters", "no/such/file", "missing.ttf"})
+        EXPECT_THROW(open_glyphs(name), Error) << name;
 }
 
 TEST(LineFont, KerningIsTakenFromTheAdvanceOfTheFirst) {

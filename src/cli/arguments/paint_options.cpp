@@ -282,7 +282,8 @@ void add_write_options(CLI::App* w, Write& write) {
     add_copy_options(w, write);
     w->add_option("--glyphs", write.glyphs,
                   "where the characters' strokes come from before the bundled ones: a folder of KanjiVG (SVG), of "
-                  "hanzi-writer-data or Make Me a Hanzi (JSON), a single-line SVG font, or a font file")
+                  "hanzi-writer-data or Make Me a Hanzi (JSON), a single-line SVG font, a font file, or the name of an "
+                  "installed font")
         ->type_name("FOLDER");
     w->add_option("--style", write.style,
                   "how they are written: kaishu (regular script), xingshu (running script), line (an even pen), italic "

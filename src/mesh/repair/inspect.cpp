@@ -182,6 +182,7 @@ std::vector<Message> describe_defects(const RepairReport& r) {
 }
 
 std::vector<std::string> describe(const MeshSummary& s) {
+    constexpr std::size_t kManyTriangles = 3'000'000;  // about a minute to prepare, and 1.5 GB
     const RepairReport& r = s.report;
     std::vector<std::string> lines;
     lines.push_back(count_text(s.n_triangles, "triangle, ", "triangles, ") +
@@ -209,6 +210,10 @@ std::vector<std::string> describe(const MeshSummary& s) {
     const std::vector<Message> defects = describe_defects(r);
     if (defects.empty()) lines.push_back("no defects");
     for (const Message& d : defects) lines.push_back("repaired: " + d.text());
+    if (s.n_triangles >= kManyTriangles)
+        lines.push_back(
+            "many triangles: 'tuft decimate' makes a light copy to paint on; its strokes are painted on this model by "
+            "'tuft replay --model'");
     return lines;
 }
 

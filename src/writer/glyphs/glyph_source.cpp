@@ -11,6 +11,7 @@
 #include "core/files/files.h"
 #include "core/files/path_fault.h"
 #include "io/font/font.h"
+#include "io/font/installed_fonts.h"
 #include "writer/glyphs/outline_font.h"
 
 namespace fs = std::filesystem;
@@ -149,6 +150,13 @@ std::unique_ptr<GlyphSource> open_folder(const fs::path& path) {
     return std::make_unique<Sources>(std::move(all));
 }
 
+/// The font of a family's name. None for what looks like a path.
+io::InstalledFont installed_font(const std::string& name) {
+    constexpr std::size_t kLongestName = 128;
+    if (name.size() > kLongestName || name.find('/') != std::string::npos || fs::path(name).has_extension()) return {};
+    return io::find_font({.families = {name}});
+}
+
 constexpr double kThinSpace = 0.2, kSpace = 0.35;  // parts of the side
 
 bool is_blank(char32_t c) {
@@ -189,7 +197,11 @@ std::vector<std::optional<Glyph>> GlyphSource::find_line(const std::u32string& l
 std::unique_ptr<GlyphSource> open_glyphs(const fs::path& path) {
     std::error_code error;
     if (!fs::exists(path, error) && error && error.value() != ENOENT) check_exists(path);
-    if (!fs::exists(path, error)) throw Error(path.string(), Message("there is no such file or folder of characters"));
+    if (!fs::exists(path, error)) {
+        if (const io::InstalledFont font = installed_font(path.string()); font.requested)
+            return open_outline_font(font.file, font.face);
+        throw Error(path.string(), Message("there is no such file or folder of characters, nor an installed font"));
+    }
     if (fs::is_directory(path, error)) return open_folder(path);
     if (path.extension() == ".svg") return std::make_unique<LineFont>(path);
     if (io::is_font_file(path)) return open_outline_font(path);

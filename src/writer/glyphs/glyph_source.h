@@ -33,7 +33,7 @@ class GlyphSource {
 ///   not read),
 /// - `graphics.txt` (Make Me a Hanzi), one JSON object a line with "character", or a folder with it,
 /// - an SVG font (`font` with open paths in `glyph`), or a folder with some,
-/// - an outline font (.ttf, .otf, .ttc, .woff2 …) through FreeType.
+/// - an outline font (.ttf, .otf, .ttc, .woff2 …) through FreeType, or the name of an installed one's family.
 /// Throws `Error` where it is none of these.
 std::unique_ptr<GlyphSource> open_glyphs(const std::filesystem::path& path);
 

@@ -11,7 +11,7 @@ constexpr double kLowest = 0.4;  // em: a deeper descent would raise the charact
 
 class OutlineFont : public GlyphSource {
   public:
-    explicit OutlineFont(const std::filesystem::path& path) : name_(path.string()), font_(path) {}
+    OutlineFont(const std::filesystem::path& path, int face) : name_(path.string()), font_(path, face) {}
 
     std::optional<Glyph> find(char32_t code) override {
         if (!font_.has(code)) return std::nullopt;
@@ -47,8 +47,8 @@ class OutlineFont : public GlyphSource {
 
 }  // namespace
 
-std::unique_ptr<GlyphSource> open_outline_font(const std::filesystem::path& path) {
-    return std::make_unique<OutlineFont>(path);
+std::unique_ptr<GlyphSource> open_outline_font(const std::filesystem::path& path, int face) {
+    return std::make_unique<OutlineFont>(path, face);
 }
 
 }  // namespace tuft::writer

@@ -9,7 +9,7 @@
 /// Characters of outline fonts (io/font). Called by glyph_source.cpp.
 namespace tuft::writer {
 
-/// Opens a font, of a collection its first face. Throws `Error` for a damaged one.
-std::unique_ptr<GlyphSource> open_outline_font(const std::filesystem::path& path);
+/// Opens a font, of a collection the face of a number (`io::Font`). Throws `Error` for a damaged one.
+std::unique_ptr<GlyphSource> open_outline_font(const std::filesystem::path& path, int face = 0);
 
 }  // namespace tuft::writer
