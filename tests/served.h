@@ -30,6 +30,11 @@ class Served {
         if (pid_ > 0) ::kill(pid_, SIGTERM);  // a shell makes its background jobs ignore SIGINT
         ::pclose(pipe_);
     }
+    /// At once, with nothing said to those who are connected.
+    void die() {
+        if (pid_ > 0) ::kill(pid_, SIGKILL);
+        pid_ = 0;
+    }
     Served(const Served&) = delete;
     Served& operator=(const Served&) = delete;
 

@@ -1,3 +1,7 @@
+#include <atomic>
+#include <chrono>
+#include <thread>
+
 #include "served.h"
 #include "studio_program.h"
 
@@ -87,13 +91,19 @@ TEST_F(StudioArm, StirsOnThePalette) {
     EXPECT_EQ(project["strokes"].size(), 1u);
 }
 
+// The service dies when the window has shown that it paints, however long that took.
 TEST_F(StudioArm, AServiceThatDiesLeavesTheStrokeAndOneLine) {
-    const Served server(tuft_program(),
-                        "device simulate --port 0 --motion rest --brush wolf-medium --fault dies --fault-after 6");
+    Served server(tuft_program(), "device simulate --port 0 --motion rest --brush wolf-medium");
     ASSERT_GT(server.port, 0);
+    std::atomic<bool> ended = false;
+    std::jthread death([&] {
+        while (!ended && !fs::exists(path("paints.png"))) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        server.die();
+    });
     expect_played(kLookedAt + "set arm-view off\nset arm-source service\nset arm-port " + std::to_string(server.port) +
-                  "\nset arm on\nawait arm painting\nawait message ended\nawait arm free\nwait-ready\nexpect strokes "
-                  "1\nset arm off\nwait 0.2\n");
+                  "\nset arm on\nawait arm painting\nawait force 0.05\nscreenshot paints.png\nawait message "
+                  "ended\nawait arm free\nwait-ready\nexpect strokes 1\nset arm off\nwait 0.2\n");
+    ended = true;
     EXPECT_EQ(strokes_that_replay("work.tuft"), 1);
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 void expect_atlas(const mesh::TriangleMesh& mesh) {
     UnwrapOptions options;
-    options.size = 256;
+    options.size = 128;
     Unwrapped u;
     ASSERT_NO_THROW(u = unwrap(mesh, options));
     ASSERT_EQ(u.atlas.corner_uvs.size(), 3 * mesh.n_triangles());

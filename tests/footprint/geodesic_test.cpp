@@ -177,7 +177,8 @@ TEST(Geodesics, NoTexelOfAStampIsFarOffOnTenRoughScans) {
     }
 }
 
-void expect_distances_on_the_car(std::uint32_t gutter) {
+/// `widths`: texels across, 40, 128 or 256.
+void expect_distances_on_the_car(std::uint32_t gutter, std::initializer_list<int> widths) {
     // Stamps as wide as the openings between the spokes, as the wheels, and between. Where the
     // surface folds, clusters lie as exact paths say; what is left are single texels of clusters on
     // whose other side another way is the shortest: up to 41 % there. Measured: mean 0.02 to 0.10
@@ -186,6 +187,7 @@ void expect_distances_on_the_car(std::uint32_t gutter) {
     Model car = shipped("car", 2048, gutter);
     for (const auto& [texels, part, places] :
          {std::tuple{40, 0.06, 5}, {40, 0.06, 7}, {128, 0.02, 5}, {256, 0.005, 5}}) {
+        if (std::ranges::find(widths, texels) == widths.end()) continue;
         const std::vector<double> errors = distance_errors(car, texels, texels < 128 ? 60 : 30, part, places);
         ASSERT_GT(errors.size(), 2500u);
         // Targets for real meshes: 0.4 % mean, 2.5 % at 99 %.
@@ -197,11 +199,11 @@ void expect_distances_on_the_car(std::uint32_t gutter) {
 }
 
 TEST(Geodesics, StampsKeepDistancesOnTheCar) {
-    expect_distances_on_the_car(4);
+    expect_distances_on_the_car(4, {40, 128, 256});
 }
 
 TEST(Geodesics, StampsKeepDistancesOnTheCarInAnotherLayout) {
-    expect_distances_on_the_car(8);
+    expect_distances_on_the_car(8, {40});  // the narrowest meet the most seams for their area
 }
 
 struct Contact {

@@ -274,7 +274,7 @@ TEST(WetFilm, KeepsEveryPigmentAndAllWater) {
     EXPECT_NEAR(s.canvas.total(s.map, 1) / ink1, 1, 1e-5);
 }
 
-TEST(WetFilm, TenThousandStepsDriftByLessThanTheirRounding) {
+TEST(WetFilm, ThousandsOfStepsDriftByLessThanTheirRounding) {
     Wet s(testing::sphere(0.002, 18));
     blot(s);
     s.each([&](std::uint32_t slot, int t, const Vec3& p) {
@@ -285,9 +285,11 @@ TEST(WetFilm, TenThousandStepsDriftByLessThanTheirRounding) {
     p.drying.evaporation = p.drying.rim_evaporation = 0;
     const double ink = s.canvas.total(s.map, 0), water = s.canvas.total_liquid(s.map);
     std::size_t steps = 0;
-    while (steps < 10000) steps += s.film.advance(s.canvas, 10, p).steps;
-    EXPECT_NEAR(s.canvas.total(s.map, 0) / ink, 1, 1e-5);
-    EXPECT_NEAR(s.canvas.total_liquid(s.map) / water, 1, 1e-5);
+    while (steps < 4000) steps += s.film.advance(s.canvas, 10, p).steps;
+    // A drift grows with the steps: 1e-9 in each, a sixtieth of what one value rounds by.
+    const double allowed = 1e-9 * static_cast<double>(steps);
+    EXPECT_NEAR(s.canvas.total(s.map, 0) / ink, 1, allowed);
+    EXPECT_NEAR(s.canvas.total_liquid(s.map) / water, 1, allowed);
 }
 
 TEST(WetFilm, PoresNeverHoldMoreThanTheirCapacityAndNothingGetsNegative) {

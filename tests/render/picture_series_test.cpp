@@ -113,8 +113,8 @@ TEST(PictureSeries, LightInterpolatedBetweenPixelsIsThatOfThePixels) {
     const Painted p;
     const Appearance lit = p.with(p.bare);
     PictureOptions options = Painted::options();
-    options.width = 360;
-    options.height = 270;
+    options.width = 240;
+    options.height = 180;
     options.light_samples = 256;
     const Image truth = render_picture(p.mesh, p.query, lit, options);
     options.light_samples = 16;
