@@ -111,6 +111,42 @@ TEST(LdltFactor, HasTheSameBitsForAnyNumberOfThreads) {
     }
 }
 
+// A chart of two parts: what pulls at one moves nothing of the other, and it goes where it would go alone. The grids
+// lie beside each other and on each other, where only their edges tell them apart; rows of both take turns.
+TEST(LdltFactor, TwoSeparateGridsDoNotKnowOfEachOther) {
+    constexpr std::uint32_t kSide = 110, kRows = kSide * kSide;
+    Random random(21);
+    const auto every = [] { return true; };
+    const Grid one = laplacian(kSide, 0.01, random, every), other = laplacian(kSide, 0.01, random, every);
+    Grid both;
+    for (std::uint32_t i = 0; i < kRows; ++i)
+        both.matrix.diagonal.insert(both.matrix.diagonal.end(), {one.matrix.diagonal[i], other.matrix.diagonal[i]});
+    for (const auto& e : one.matrix.entries) both.matrix.entries.push_back({2 * e.row, 2 * e.column, e.value});
+    for (const auto& e : other.matrix.entries)
+        both.matrix.entries.push_back({2 * e.row + 1, 2 * e.column + 1, e.value});
+    std::vector<Vec2> alone = random_numbers(kRows, random), pulled(2 * kRows, Vec2(0));
+    for (std::uint32_t i = 0; i < kRows; ++i) pulled[2 * i] = alone[i];
+    LdltFactor factor;
+    ASSERT_TRUE(factor.compute(one.matrix, one.at));
+    factor.solve(alone);
+    for (const double apart : {0.0, 0.5, 2.0 * kSide}) {
+        both.at.clear();
+        for (const Vec2& p : one.at) both.at.insert(both.at.end(), {p, p + Vec2(apart, 0)});
+        std::vector<Vec2> x = pulled;
+        ASSERT_TRUE(factor.compute(both.matrix, both.at));
+        factor.solve(x);
+        EXPECT_LT(residual(both.matrix, x, pulled), 1e-14) << apart;
+        double most = 0, off = 0;
+        for (std::uint32_t i = 0; i < kRows; ++i) {
+            ASSERT_EQ(x[2 * i + 1], Vec2(0)) << apart << ", row " << i;
+            most = std::max(most, glm::length(alone[i]));
+            off = std::max(off, glm::distance(x[2 * i], alone[i]));
+        }
+        // Rounding, 1e-16 in each of both, times how much larger than 0.01 the largest eigenvalue is, some 12.
+        EXPECT_LT(off, 1e-12 * most) << apart;
+    }
+}
+
 TEST(LdltFactor, RefusesWhatIsSingular) {
     LdltFactor factor;
     const std::vector<Vec2> at(4, Vec2(0));

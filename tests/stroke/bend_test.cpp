@@ -53,7 +53,9 @@ TEST(Bend, AreasStencilsAndOutlinesFollowTheArc) {
     constexpr double kCurvature = 10, kWidth = 0.06;
     const std::vector<Vec2> box{{-0.03, -0.01}, {0.03, -0.01}, {0.03, 0.01}, {-0.03, 0.01}};
     FlatArea area{.rings = {box}};
+    area.under = {box};
     bend_area(area, kCurvature, kWidth);
+    EXPECT_EQ(area.under, area.rings) << "what it reaches under goes the same way";
     double sum = 0;
     const std::vector<Vec2>& ring = area.rings[0];
     for (std::size_t i = 0; i < ring.size(); ++i) {

@@ -245,6 +245,7 @@ TEST(FollowModel, AStretchedPlaneCarriesAStretchedDrawing) {
 
     FlatArea area;
     area.rings = {{{-5e-3, -5e-3}, {5e-3, -5e-3}, {5e-3, 5e-3}}};
+    area.under = area.rings;
     area.placement = stroke.trace.placement;
     area.stops = {{.at = 0, .ink = "carbon"}, {.at = 1, .ink = "cinnabar"}};
     area.gradient = AreaGradient::linear;
@@ -257,6 +258,7 @@ TEST(FollowModel, AStretchedPlaneCarriesAStretchedDrawing) {
         EXPECT_LT(glm::distance(motion(in_space(area, area.rings[0][i])), in_space(moved, moved.rings[0][i])), 1e-9);
         EXPECT_NEAR(along_area(area, area.rings[0][i]), along_area(moved, moved.rings[0][i]), 1e-9);
     }
+    EXPECT_EQ(moved.under, moved.rings) << "what it reaches under goes the same way";
 }
 
 /// A shell as a model to paint on.
