@@ -12,6 +12,9 @@ constexpr std::size_t kPartPoses = 32;    // a hundredth of a second of bending
 constexpr std::size_t kHandPoses = 4;     // of a hand that paints: its ink waits for the first part
 constexpr std::size_t kPartsAhead = 3;    // bound the poses in memory
 constexpr std::size_t kClosedAtOnce = 8;  // poses whose footprints are computed in parallel, as a batch of stamps is
+// Up to so many threads the one that bends ahead also computes the footprints: else it waits, and those who deposit ink
+// have them to do.
+constexpr int kThreadsForOneCloser = 4;
 
 bool same(const brush::Pose& a, const brush::Pose& b) {
     return a.position == b.position && a.rotation == b.rotation && a.time == b.time;
@@ -75,7 +78,9 @@ void StrokeForecast::compute(bool closes) {
 }
 
 void StrokeForecast::compute_ahead() {
-    ahead_ = std::make_unique<WorkAhead>(parts_.size(), kPartsAhead, [this](std::size_t k) { compute_part(k, false); });
+    const bool closes = thread_count() <= kThreadsForOneCloser;
+    ahead_ = std::make_unique<WorkAhead>(parts_.size(), kPartsAhead,
+                                         [this, closes](std::size_t k) { compute_part(k, closes); });
     ahead_->begin();
 }
 
@@ -94,10 +99,12 @@ void StrokeForecast::follow(std::vector<brush::Pose> poses) {
 // Footprints do not depend on each other: the threads that deposit compute them.
 void StrokeForecast::close_together(Part& part, std::size_t from) const {
     const std::size_t n = std::min(kClosedAtOnce, part.poses.size() - from);
+    const auto is_open = [](const PoseForecast& pose) { return touches(pose.contact) && !pose.hair.closed; };
+    if (std::ranges::none_of(std::span(part.poses).subspan(from, n), is_open)) return;
     parallel_for(n, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             PoseForecast& pose = part.poses[from + i];
-            if (touches(pose.contact)) close_hair(pose.hair, pose.contact, options_.closed);
+            if (is_open(pose)) close_hair(pose.hair, pose.contact, options_.closed);
         }
     });
 }
