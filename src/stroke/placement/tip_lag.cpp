@@ -273,7 +273,7 @@ double first_pace(std::span<const StrokeSample> samples, double reach) {
 // The hand of a trace that begins pressed goes the tip_lag while it presses: the tip touches where the trace
 // begins and trails from there. Set down from above it would bend to any side, and a tuft that is
 // pushed before the hand turns over only after centimetres.
-bool set_down(StrokeSamples& trace, const HolderOptions& options, const Vec2& ahead) {
+bool set_down(StrokeSamples& trace, const HolderOptions& options, const Vec2& ahead, bool dot) {
     constexpr double kStep = 2.5e-4;  // metres between samples, less where they would be few
     constexpr double kFewest = 8, kMost = 100;
     constexpr double kPaceLength = 3e-3;  // metres over which the pace is taken
@@ -281,8 +281,8 @@ bool set_down(StrokeSamples& trace, const HolderOptions& options, const Vec2& ah
     constexpr double kTouch = 1e-6;       // of the pressure: the tip is down from the first sample
     const StrokeSample first = trace.samples.front();
     if (!(tip_lag_length(options.tip_lag, depth_of(options, first.pressure)) > 0)) return false;
-    if (ahead == Vec2(0)) return false;
-    const double pace = first_pace(trace.samples, kPaceLength);  // of a dot none
+    const double pace = first_pace(trace.samples, kPaceLength);
+    if (!(pace > 0) && (!dot || ahead == Vec2(0))) return false;
     // Metres that the foot of the holder goes, ahead and down, up to each pressure.
     std::vector<double> gone{0};
     Vec3 foot{0};
@@ -388,7 +388,7 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     const Vec2 ahead = sets_out(trace.samples, options);
     const bool dot = is_dot(trace.samples, options);
     const Vec2 off = dot && options.dot_place ? options.dot_place(trace) : Vec2{0};
-    const bool pressed = set_down(trace, options, ahead);
+    const bool pressed = set_down(trace, options, ahead, dot);
     set_down_plumb(trace, options);
     // Over a convex surface a blade's point meets ground that falls ahead of it, however softly it lands: it would
     // slide on ahead of the hand and fall to its side.
