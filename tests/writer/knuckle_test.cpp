@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "writer/fit/knuckle_fit.h"
+#include "writer/fit/ink_score.h"
 #include "writer/gesture/knuckles.h"
 
 namespace tuft::writer {
@@ -64,33 +64,18 @@ TEST(Knuckles, ASwellingThatTheAreaHasNotIsOneWithTwoNecksAndElseNone) {
     EXPECT_TRUE(knuckles_of(ink, coverage_of(ink), turns_of(ink, 0.5 * kKnuckle)).empty());
 }
 
-// Stations that are too wide swell the stroke; the knuckles of what the fit returns are fewer or blunter.
-TEST(Knuckles, TheFitTakesASwellingOff) {
-    stroke::WidthTables tables;
-    const std::string brush = "goat-medium";
-    const BrushHand hand{tables.preset(brush), tables.of(brush), tables.holder(brush), 1.3e-4};
-    const FitTarget target{.wanted = cells_of(bar(220)), .weights = {}};
-    const std::vector<EdgeTurn> wanted = turns_of(target.wanted, 0.5 * kKnuckle);
-    std::vector<Station> stations;
-    for (double x = 90; x <= 226; x += 8) stations.push_back({{x, 100}, std::min(18.0, 6 + 0.5 * (x - 90))});
-    stations[9].half = 23, stations[9].centre.y = 103;
-    const FitOptions options{.fine_step = 2.5, .knuckle_tries = 24};
-    const std::vector<float> depths(target.wanted.inside.size(), 4.0f);
-    const auto sharpness_of = [&](const std::vector<Station>& s) {
-        const stroke::PlaneInk ink = draw_on_plane(s, hand, {}, options.fine_step, target.wanted.cell);
-        std::vector<float> coverage;
-        for (int j = 0; j < target.wanted.height; ++j)
-            for (int i = 0; i < target.wanted.width; ++i)
-                coverage.push_back(static_cast<float>(ink.at(target.wanted.centre(i, j) * hand.unit)));
-        double sum = 0;
-        for (const EdgeTurn& turn : knuckles_of(target.wanted, coverage, wanted)) sum += std::abs(turn.curvature);
-        return sum;
-    };
-    stroke::PlaneDrawing drawing(hand.preset, hand.hold, options.fine_step * hand.unit, target.wanted.cell * hand.unit);
-    const FitResult taken = take_off_knuckles({.stations = stations}, target, depths, hand, {}, options, drawing);
-    EXPECT_GT(sharpness_of(stations), kKnuckle);
-    EXPECT_LT(sharpness_of(taken.stations), 0.8 * sharpness_of(stations));  // a fifth is more than ripples of the edge
-    EXPECT_LE(taken.tries, options.knuckle_tries);
+// A top of a disc of 14 units and two necks cost at least a knuckle's least curvature each; where other ink lies over
+// them nobody sees them.
+TEST(Knuckles, ASwellingCostsSharpnessUnlessAnotherStrokeLiesOverIt) {
+    std::vector<Ring> swollen = bar();
+    swollen.push_back(disc({200, 122}, 14));
+    const std::vector<float> plain = coverage_of(cells_of(bar())), ink = coverage_of(cells_of(swollen));
+    FitTarget target{.wanted = cells_of(bar()), .weights = {}};
+    const std::vector<EdgeTurn> turns = turns_wanted(target.wanted);
+    EXPECT_EQ(sharpness_of(target, turns, plain), 0);
+    EXPECT_GT(sharpness_of(target, turns, ink), 3);
+    target.weights.assign(target.wanted.inside.size(), 0.25f);
+    EXPECT_EQ(sharpness_of(target, turns, ink), 0);
 }
 
 }  // namespace

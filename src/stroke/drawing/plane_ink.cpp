@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "brush/tuft/tuft.h"
 #include "brush/tuft/upright_hair.h"
@@ -18,10 +17,6 @@ namespace {
 
 std::uint64_t key_of(std::int64_t i, std::int64_t j) {
     return (static_cast<std::uint64_t>(i) << 32) ^ (static_cast<std::uint64_t>(j) & 0xFFFFFFFFu);
-}
-
-bool is_same(const brush::Pose& a, const brush::Pose& b) {
-    return a.position == b.position && a.rotation == b.rotation && a.time == b.time;
 }
 
 std::int64_t tile_of(std::int64_t cell, int tile) {
@@ -49,16 +44,6 @@ void PlaneInk::add(const footprint::Footprint& f, double time) {
                 }
             }
             x += n;
-        }
-    }
-}
-
-void PlaneInk::add(const PlaneInk& later) {
-    for (const auto& [key, from] : later.tiles_) {
-        Tile& tile = tiles_[key];
-        for (std::size_t k = 0; k < from.coverage.size(); ++k) {
-            if (from.coverage[k] > 127 && tile.coverage[k] <= 127) tile.first[k] = from.first[k];
-            tile.coverage[k] = std::max(tile.coverage[k], from.coverage[k]);
         }
     }
 }
@@ -126,7 +111,7 @@ void PlaneInk::copy_row(std::int64_t i, std::int64_t j, std::span<float> to) con
 PlaneDrawing::PlaneDrawing(const brush::Preset& preset, const HolderOptions& hold, double step, double cell)
     : hold_(hold), step_(step), tuft_(brush::make_tuft(preset)), fresh_(tuft_), ink_(cell) {}
 
-void PlaneDrawing::begin(const StrokeSamples& trace) {
+std::vector<brush::Pose> PlaneDrawing::poses_of(const StrokeSamples& trace) const {
     std::vector<brush::Pose> samples;
     const StrokeSamples led = lift_off(compensate_tip_lag(lean_holder(trace, hold_), hold_), hold_);
     const std::vector<double> depths = tip_depths<StrokeSample>(led.samples, hold_);
@@ -135,58 +120,28 @@ void PlaneDrawing::begin(const StrokeSamples& trace) {
         samples.push_back(pose_holder({s.position.x, -s.position.y, 0}, 0,
                                       {.depth = depths[i], .tilt = s.tilt, .roll = s.roll, .time = s.time}, hold_));
     }
-    poses_ = resample(samples, {.step = step_, .lever = tuft_.preset.length});
-    std::size_t alike = 0;
-    while (alike < std::min(poses_.size(), last_poses_.size()) && is_same(poses_[alike], last_poses_[alike])) ++alike;
-    n_shared_ = std::min(alike / kKeepEvery, last_blocks_.size() - std::min<std::size_t>(last_blocks_.size(), 1));
-    static_cast<brush::TuftBend&>(tuft_) = last_blocks_.empty() ? fresh_ : last_blocks_[n_shared_].before;
-    blocks_.clear();
-    next_ = n_shared_ * kKeepEvery;
-}
-
-void PlaneDrawing::draw_until(double time) {
-    for (; next_ < poses_.size() && poses_[next_].time <= time; ++next_) {
-        if (next_ % kKeepEvery == 0) blocks_.push_back({tuft_, PlaneInk(ink_.cell())});
-        add_stamp(poses_[next_], next_ > 0 ? poses_[next_].time - poses_[next_ - 1].time : 0, blocks_.back().ink);
-    }
-    ink_ = PlaneInk(ink_.cell());
-    for (std::size_t b = 0; b < n_shared_; ++b) ink_.add(last_blocks_[b].ink);
-    for (const Block& block : blocks_) ink_.add(block.ink);
-}
-
-const PlaneInk& PlaneDrawing::draw_part(const StrokeSamples& trace, double until, double resume) {
-    begin(trace);
-    draw_until(until);
-    if (next_ == poses_.size()) return ink_;
-    for (std::size_t b = n_shared_; b < last_blocks_.size(); ++b)
-        if (last_poses_[std::min((b + 1) * kKeepEvery, last_poses_.size()) - 1].time >= resume)
-            ink_.add(last_blocks_[b].ink);
-    return ink_;
-}
-
-const PlaneInk& PlaneDrawing::finish() {
-    draw_until(std::numeric_limits<double>::infinity());
-    last_blocks_.erase(last_blocks_.begin() + static_cast<std::ptrdiff_t>(n_shared_), last_blocks_.end());
-    for (Block& block : blocks_) last_blocks_.push_back(std::move(block));
-    blocks_.clear();
-    n_shared_ = last_blocks_.size();
-    last_poses_ = poses_;
-    return ink_;
+    return resample(samples, {.step = step_, .lever = tuft_.preset.length});
 }
 
 const PlaneInk& PlaneDrawing::draw(const StrokeSamples& trace) {
-    begin(trace);
-    return finish();
+    ink_ = PlaneInk(ink_.cell());
+    static_cast<brush::TuftBend&>(tuft_) = fresh_;
+    double before = 0;
+    for (bool first = true; const brush::Pose& pose : poses_of(trace)) {
+        add_stamp(pose, first ? 0 : pose.time - before);
+        before = pose.time, first = false;
+    }
+    return ink_;
 }
 
-void PlaneDrawing::add_stamp(const brush::Pose& pose, double dt, PlaneInk& ink) {
+void PlaneDrawing::add_stamp(const brush::Pose& pose, double dt) {
     const Frame plane_frame;
     const brush::ContactPlane plane;
-    const double cell = ink.cell();
+    const double cell = ink_.cell();
     const brush::TuftState state = brush::step(tuft_, pose, {&plane, 1}, dt);
     if (!state.touching) return;
     if (tuft_.carried) {
-        ink.add(
+        ink_.add(
             footprint::rasterise_polygons(
                 footprint::shape_polygons(tuft_, state.shape, plane_frame, {.film = kSkinFilm}), plane_frame, 0, cell),
             std::max(0.0, pose.time));
@@ -198,7 +153,7 @@ void PlaneDrawing::add_stamp(const brush::Pose& pose, double dt, PlaneInk& ink) 
     for (const footprint::Trail& trail : trails)
         if (footprint::Outline o = footprint::outline_of(trail, footprint::OutlineOptions{}.points); o.left.size() >= 3)
             outlines.push_back(std::move(o));
-    ink.add(footprint::rasterise(outlines, plane_frame, 0, cell), std::max(0.0, pose.time));
+    ink_.add(footprint::rasterise(outlines, plane_frame, 0, cell), std::max(0.0, pose.time));
 }
 
 PlaneInk plane_ink(const StrokeSamples& trace, const brush::Preset& preset, const HolderOptions& options, double step,

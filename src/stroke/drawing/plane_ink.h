@@ -28,9 +28,6 @@ class PlaneInk {
     double at(const Vec2& p) const;
     /// Returns the time at which half of the cell at a point was first covered, seconds; negative: never.
     double when(const Vec2& p) const;
-    /// Takes the maximum of the coverage and that of ink of the same cells. Where half of a cell was covered before,
-    /// its time stays.
-    void add(const PlaneInk& later);
     /// Copies the coverage of a row of cells, from cell (i, j) on, whose centre is cell · (i + ½, j + ½).
     void copy_row(std::int64_t i, std::int64_t j, std::span<float> to) const;
     /// Returns the mean place of the covered area, metres; nothing where there is none.
@@ -50,44 +47,23 @@ class PlaneInk {
     std::unordered_map<std::uint64_t, Tile> tiles_;
 };
 
-/// Draws one trace after the other with the same brush, each on an empty plane. Poses that a trace has in common with
-/// the last drawn one, from the first on, are not drawn again; the ink is the same to the bit.
+/// Draws one trace after the other with the same brush, which is made once, each on an empty plane.
 class PlaneDrawing {
   public:
     /// Arguments as those of `plane_ink`.
     PlaneDrawing(const brush::Preset& preset, const HolderOptions& hold, double step, double cell);
     /// Returns the ink of a trace, until the next call.
     const PlaneInk& draw(const StrokeSamples& trace);
-    /// Returns the ink of a trace that is drawn up to the time `until`, together with the ink that the last drawn trace
-    /// left from its own time `resume` on (seconds; up to `kKeepEvery` poses more). That is nearly the ink of a trace
-    /// that differs from the last drawn one in a short part, which ends well before these times.
-    const PlaneInk& draw_part(const StrokeSamples& trace, double until, double resume);
-    /// Draws the rest of the trace of `draw_part`, and returns its ink.
-    const PlaneInk& finish();
-
-    static constexpr std::size_t kKeepEvery = 16;  ///< poses
 
   private:
-    /// `kKeepEvery` poses, the last one of a trace perhaps fewer.
-    struct Block {
-        brush::TuftBend before;
-        PlaneInk ink;  // theirs alone
-    };
-    void begin(const StrokeSamples& trace);
-    void draw_until(double time);
-    void add_stamp(const brush::Pose& pose, double dt, PlaneInk& ink);
+    std::vector<brush::Pose> poses_of(const StrokeSamples& trace) const;
+    void add_stamp(const brush::Pose& pose, double dt);
 
     HolderOptions hold_;
     double step_;
     brush::Tuft tuft_;
     brush::TuftBend fresh_;
     PlaneInk ink_;
-    std::vector<brush::Pose> last_poses_;  // of the last drawn trace
-    std::vector<Block> last_blocks_;
-    std::vector<brush::Pose> poses_;  // of the trace in work
-    std::size_t n_shared_ = 0;        // blocks of the last drawn trace with which it begins
-    std::vector<Block> blocks_;       // those after them
-    std::size_t next_ = 0;            // pose
 };
 
 /// Returns the area that a full brush touches along a flat trace on a plane. Frame: metres, x to the right, y up (−y of

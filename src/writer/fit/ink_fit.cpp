@@ -5,7 +5,6 @@
 
 #include "core/system/interrupt.h"
 #include "writer/fit/ink_score.h"
-#include "writer/fit/knuckle_fit.h"
 
 namespace tuft::writer {
 namespace {
@@ -25,10 +24,8 @@ constexpr double kLastSoft = 1.2;        // stations, at most, in the last corre
 constexpr double kNeedle = 24;           // units about an end in which its ink must not reach further than wanted
 constexpr double kNeedleBack = 0.6;      // part of that taken back at once
 constexpr float kDeepest = 24;           // units of depth that count
-constexpr int kRough = 2;                // tries that are drawn in larger steps: they are far off anyway
-constexpr double kRougher = 1.6;         // of the step
+constexpr double kPrice = 0.002;         // of the score, for a knuckle of the least curvature
 constexpr double kGood = 0.98, kSettled = 0.002;  // a path that scores so much, and gains less in a try, stays
-constexpr double kBehind = 0.06;                  // over the tries so far: less than the best by more is given up
 
 struct Errors {
     std::vector<double> left, right, kick;  ///< units, [stations]
@@ -249,55 +246,61 @@ FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& ta
         const std::vector<float> coverage = coverage_by(ink, target.wanted);
         return Try{score_of(target, depths, coverage), errors_of(next, sides, target, coverage, ink, trace, hand.unit)};
     };
-    const auto try_out = [&](const std::vector<Station>& next, const std::vector<Station>& sides, int t) {
+    const double cell = target.wanted.cell * hand.unit;
+    stroke::PlaneDrawing coarse(hand.preset, hand.hold, options.step * hand.unit, cell);
+    const auto try_out = [&](const std::vector<Station>& next, const std::vector<Station>& sides) {
         check_interrupt();
-        const double step = t <= kRough ? kRougher * options.step : options.step;
         const stroke::StrokeSamples trace = samples_of(next, hand, pace);
-        return judged(
-            trace, stroke::plane_ink(trace, hand.preset, hand.hold, step * hand.unit, target.wanted.cell * hand.unit),
-            next, sides);
+        return judged(trace, coarse.draw(trace), next, sides);
     };
     FitResult best{.stations = stations};
+    std::vector<double> best_at;  // scores of the begin of `best`, after each try
     const auto fit_from = [&](const std::vector<Station>& first, const Try& first_try, const Manner& manner) {
         const std::vector<double> soft = softness_of(first);
         FitResult own{.stations = first};
+        std::vector<double> own_at;
         std::vector<Station> next = first;
         for (int t = 1, idle = 0; t <= options.tries && idle < options.idle; ++t) {
-            const Try now = t == 1 ? first_try : try_out(next, manner.first_sides ? first : next, t);
+            const Try now = t == 1 ? first_try : try_out(next, manner.first_sides ? first : next);
             const double gain = now.reached.score - own.score;
             idle = gain > 1e-4 ? 0 : idle + 1;
             if (gain > 0) own.score = now.reached.score, own.iou = now.reached.iou, own.stations = next;
             own.tries += t > 1;
             if (t > 2 && own.score > kGood && gain < kSettled) break;
-            if (t > 1 && own.score < best.score - kBehind / t) break;
+            own_at.push_back(own.score);
+            if (t > 1 && !best_at.empty() && own.score < best_at[std::min(own_at.size(), best_at.size()) - 1]) break;
             correct(next, first, soft, now.errors, manner);
         }
         own.tries += best.tries;
         if (own.score > best.score)
-            best = std::move(own);
+            best = std::move(own), best_at = std::move(own_at);
         else
             best.tries = own.tries;
     };
     for (const std::vector<Station>* begin : {&stations, &other}) {
         if (begin->empty() || (best.tries > 0 && best.iou >= options.weak)) continue;
-        const Try first_try = try_out(*begin, *begin, 1);
+        const Try first_try = try_out(*begin, *begin);
         ++best.tries;
         for (const Manner& manner : kManners)
             if (&manner == kManners || best.iou < options.weak) fit_from(*begin, first_try, manner);
     }
     // Ink depends on the step: in the steps of a painter it lies a unit beside that of the tries.
-    stroke::PlaneDrawing fine(hand.preset, hand.hold, options.fine_step * hand.unit, target.wanted.cell * hand.unit);
-    best = take_off_knuckles(std::move(best), target, depths, hand, pace, options, fine);
+    stroke::PlaneDrawing fine(hand.preset, hand.hold, options.fine_step * hand.unit, cell);
+    const std::vector<EdgeTurn> wanted_turns = turns_wanted(target.wanted);
     const std::vector<Station> before_last = best.stations;
     const std::vector<double> soft = last_softness_of(before_last);
     std::vector<Station> next = before_last;
+    double best_value = 0;
     for (int t = 1; t <= options.last_tries; ++t) {
         check_interrupt();
         const stroke::StrokeSamples trace = samples_of(next, hand, pace);
-        const Try now = judged(trace, fine.draw(trace), next, next);
+        const stroke::PlaneInk& ink = fine.draw(trace);
+        const Try now = judged(trace, ink, next, next);
+        const double value =
+            now.reached.score - kPrice * sharpness_of(target, wanted_turns, coverage_by(ink, target.wanted));
         ++best.tries;
-        if (t == 1 || now.reached.score > best.score)
-            best.stations = next, best.iou = now.reached.iou, best.score = now.reached.score;
+        if (t == 1 || value > best_value)
+            best.stations = next, best.iou = now.reached.iou, best.score = now.reached.score, best_value = value;
         if (t < options.last_tries) correct(next, before_last, soft, now.errors, kManners[0]);
     }
     return best;

@@ -7,6 +7,14 @@ namespace {
 
 constexpr double kRim = 4;  // units of depth at which a wrong cell counts once
 
+bool is_under_another(const FitTarget& target, const Vec2& p) {
+    const Cells& c = target.wanted;
+    const Vec2 cell = glm::floor((p - c.lo) / c.cell);
+    const auto i = static_cast<int>(cell.x), j = static_cast<int>(cell.y);
+    if (i < 0 || j < 0 || i >= c.width || j >= c.height) return false;
+    return target.weight(std::size_t(j) * c.width + static_cast<std::size_t>(i)) < 1;
+}
+
 }  // namespace
 
 std::vector<float> coverage_by(const stroke::PlaneInk& ink, const Cells& cells) {
@@ -30,6 +38,17 @@ InkScore score_of(const FitTarget& target, std::span<const float> depths, std::s
         deep += weight * static_cast<double>(depths[at]) / kRim;
     }
     return {either > 0 ? both / either : 0, both > 0 ? both / (both + deep) : 0};
+}
+
+std::vector<EdgeTurn> turns_wanted(const Cells& wanted) {
+    return edge_turns(wanted, coverage_of(wanted), 0.5 * kKnuckle);
+}
+
+double sharpness_of(const FitTarget& target, std::span<const EdgeTurn> turns, std::span<const float> coverage) {
+    double sum = 0;
+    for (const EdgeTurn& turn : knuckles_of(target.wanted, coverage, turns))
+        if (!is_under_another(target, turn.at)) sum += std::abs(turn.curvature) / kKnuckle;
+    return sum;
 }
 
 }  // namespace tuft::writer

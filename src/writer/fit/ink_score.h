@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "writer/fit/ink_fit.h"
+#include "writer/gesture/knuckles.h"
 
 /// \file
 /// How well ink covers a wanted area. Called by the parts of the fit.
@@ -24,5 +25,12 @@ std::vector<float> coverage_by(const stroke::PlaneInk& ink, const Cells& cells);
 /// Returns the agreement of ink with a target: B cells are covered rightly, and the sums are over those covered
 /// wrongly, each of weight w and d units from the edge. `depths`, `coverage`: [cells of the target].
 InkScore score_of(const FitTarget& target, std::span<const float> depths, std::span<const float> coverage);
+
+/// Returns the turns of an area by which the knuckles of ink on it are told.
+std::vector<EdgeTurn> turns_wanted(const Cells& wanted);
+
+/// Returns Σ |curvature| / kKnuckle over the knuckles of ink, `turns_wanted` given. Those under other strokes, where
+/// errors weigh less than 1, are not seen and do not count.
+double sharpness_of(const FitTarget& target, std::span<const EdgeTurn> turns, std::span<const float> coverage);
 
 }  // namespace tuft::writer

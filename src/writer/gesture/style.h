@@ -8,7 +8,7 @@
 /// Styles of writing: parameters of a hand, from a TOML file. Called by the writer.
 namespace tuft::writer {
 
-inline constexpr int kFitTries = 5;  ///< drawings on the plane by which a stroke is fitted, at most
+inline constexpr int kFitTries = 3;  ///< drawings on the plane by which a stroke is fitted, at most
 
 /// How a hand's strokes get their width.
 enum class HandKind {
