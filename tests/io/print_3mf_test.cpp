@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <map>
 
 #include "core/files/files.h"
@@ -201,6 +202,37 @@ TEST(Print3mf, TexturedFileReadsBackAndLib3mfFindsNoFault) {
     EXPECT_TRUE(facts.valid);
     EXPECT_EQ(facts.warnings, 0u);
     EXPECT_EQ(facts.triangles, 4u);
+}
+
+/// Number of triangles by their paint in the file of PrusaSlicer or in ours.
+std::map<std::string, int> paint_in(const std::filesystem::path& path) {
+    const std::vector<char> bytes = read_file(path);
+    Zip zip(bytes, path.string());
+    const std::vector<char> entry = zip.read("3D/3dmodel.model");
+    const std::string text(entry.begin(), entry.end()), key = "slic3rpe:mmu_segmentation=\"";
+    std::map<std::string, int> paint;
+    for (auto at = text.find(key); at != text.npos; at = text.find(key, at + 1))
+        ++paint[text.substr(at + key.size(), text.find('"', at + key.size()) - at - key.size())];
+    return paint;
+}
+
+TEST(Print3mf, PrusaSlicerReadsThePaintAndWritesItAgain) {
+    const Folder folder("prusa");
+    const std::string log = (folder / "log").string(), out = (folder / "back.3mf").string();
+    if (std::system("command -v prusa-slicer > /dev/null")) GTEST_SKIP() << "PrusaSlicer is not installed";
+    const mesh::TriangleMesh mesh = tetrahedron();
+    const PaintOptions options = white_and_blue(2e-3);
+    write_painted_3mf(folder / "p.3mf", paint_triangles(mesh, cylinder_atlas(mesh, kSize), discs(), options),
+                      options.filaments, true);
+    const std::string in = (folder / "p.3mf").string(), to_log = " >> '" + log + "' 2>&1";
+    ASSERT_EQ(std::system(("prusa-slicer --info '" + in + "'" + to_log).c_str()), 0);
+    ASSERT_EQ(std::system(("prusa-slicer --export-3mf -o '" + out + "' '" + in + "'" + to_log).c_str()), 0);
+    const std::vector<char> bytes = read_file(log);
+    const std::string said(bytes.begin(), bytes.end());
+    EXPECT_NE(said.find("size_x = 20.000000"), said.npos) << said;
+    EXPECT_NE(said.find("manifold = yes"), said.npos) << said;
+    EXPECT_FALSE(paint_in(folder / "p.3mf").empty());
+    EXPECT_EQ(paint_in(out), paint_in(folder / "p.3mf"));
 }
 
 TEST(ZipWriter, EntriesComeBackAndTheSameEntriesAreTheSameBytes) {
