@@ -23,7 +23,8 @@ constexpr double kLeastSide = 0.010;    // metres
 constexpr double kStrainPixel = 5e-4;   // metres, of strain maps
 constexpr double kFragment = 0.01;      // of the paint of the piece beyond the seam
 constexpr double kSpeck = 0.1;          // of `least_fragment`
-constexpr double kSpecksOfAll = 0.001;  // of all paint, all specks together
+constexpr double kSliver = 0.1;         // of its film, that is painted
+constexpr double kSpecksOfAll = 0.001;  // of all paint, all specks together, and all slivers
 constexpr double kSeamStep = 1e-4;      // metres, at most, between the places of a seam that are looked at
 constexpr double kBesideSeam = 2e-5;    // metres
 
@@ -170,23 +171,31 @@ bool continues_larger_piece(const CutFilm& cut, const std::vector<std::uint32_t>
     return false;
 }
 
-/// Takes fragments and specks out of the pieces.
+/// Sum of the paint of the pieces that `is` true for.
+double paint_where(const std::vector<Piece>& pieces, auto&& is) {
+    double sum = 0;
+    for (const Piece& piece : pieces)
+        if (is(piece)) sum += piece.paint_area;
+    return sum;
+}
+
+/// Takes fragments, specks and slivers out of the pieces.
 LeftOut leave_out_fragments(const CutFilm& cut, const CoverageFn& coverage, const SheetOptions& options,
                             std::vector<Piece>& pieces) {
     const double least = options.least_fragment;
     const std::vector<std::uint32_t> twin = atlas::twin_half_edges(cut.film.mesh);
-    double all = 0, specks = 0;
-    for (const Piece& piece : pieces) {
-        all += piece.paint_area;
-        if (piece.paint_area < kSpeck * least) specks += piece.paint_area;
-    }
-    const double speck = specks < kSpecksOfAll * all ? kSpeck * least : 0;
+    const auto is_speck = [&](const Piece& piece) { return piece.paint_area < kSpeck * least; };
+    const auto is_sliver = [&](const Piece& piece) {
+        return piece.paint_area < options.least_piece && piece.paint_area < kSliver * area_of(piece.film);
+    };
+    const double few = kSpecksOfAll * paint_where(pieces, [](const Piece&) { return true; });
+    const bool no_specks = paint_where(pieces, is_speck) < few, no_slivers = paint_where(pieces, is_sliver) < few;
     std::vector<Piece> kept;
     LeftOut left_out;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         report(options.progress, "fragments", static_cast<double>(i) / static_cast<double>(pieces.size()));
         const Piece& piece = pieces[i];
-        if (piece.paint_area < speck ||
+        if ((no_specks && is_speck(piece)) || (no_slivers && is_sliver(piece)) ||
             (piece.paint_area < least && continues_larger_piece(cut, twin, piece, pieces, coverage))) {
             ++left_out.fragments;
             left_out.paint_area += piece.paint_area;

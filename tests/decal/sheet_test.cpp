@@ -200,6 +200,25 @@ TEST_F(SheetOfFormula, LeavesOutSpecksOnlyWhereTheyAreNotMissed) {
     EXPECT_LT(with_area.left_out.paint_area, 1e-6);
 }
 
+// A large area of 2,750 mm², and far from it 2 mm² as a strip on film 10 mm wide, or a seal of 16 mm².
+TEST_F(SheetOfFormula, LeavesOutSliversThatAreNotWorthTheirFilm) {
+    const mesh::TriangleMesh model = test::cylinder_part(kRadius, 2, 0.05, 60, 30);
+    const auto painted = [](double width, double height) {
+        return [=](const Vec3& p) {
+            const double x = kRadius * std::atan2(p.y, p.x) / kMm, z = p.z / kMm;
+            return x > -5 || (std::abs(x + 35) < 0.5 * width && std::abs(z - 25) < 0.5 * height);
+        };
+    };
+    SheetOptions options{.bleed = 3 * kMm, .join = 2 * kMm, .prints = false};
+    const Sheet strip = sheet(model, painted(0.4, 5), options);
+    EXPECT_EQ(strip.pieces.size(), 1u);
+    EXPECT_EQ(strip.left_out.fragments, 1u);
+    EXPECT_NEAR(strip.left_out.paint_area, 2e-6, 0.3e-6);  // rims in samples of 0.05 mm
+    EXPECT_EQ(sheet(model, painted(4, 4), options).pieces.size(), 2u) << "a seal";
+    options.least_piece = 0;
+    EXPECT_EQ(sheet(model, painted(0.4, 5), options).pieces.size(), 2u);
+}
+
 // Dots 1 mm wide all over: beyond a cut line only the rest of those that it cuts is printed, nothing of the next ones.
 TEST_F(SheetOfFormula, BleedPrintsOnlyWhatIsCutThrough) {
     const mesh::TriangleMesh model = test::whole_cylinder(kRadius, 0.04, 240, 20);

@@ -42,6 +42,7 @@ decal::SheetOptions sheet_options(const Decals& a, Console& console) {
     options.overlap = kMillimetre * a.overlap_mm;
     options.join = kMillimetre * a.join_mm;
     options.least_fragment = kMillimetre * kMillimetre * a.least_fragment_mm2;
+    options.least_piece = kMillimetre * kMillimetre * a.least_piece_mm2;
     options.page = kMillimetre * a.print.page_mm;
     options.upright = a.print.grain == "up";
     options.pixel = 0.0254 / a.print.dpi;
@@ -96,7 +97,7 @@ void print_result(const Decals& a, const decal::Sheet& sheet, const std::vector<
     fmt::print("{} on {}, {:.1f} cm2 of film, strained by {:.2f} % at most\n", counted(sheet.pieces.size(), "piece"),
                counted(pages, "page"), film * 1e4, 100 * strain);
     if (sheet.left_out.fragments > 0)
-        fmt::print("left out: {} with {:.1f} mm2 of paint (--least-fragment 0 lays them)\n",
+        fmt::print("left out: {} with {:.1f} mm2 of paint (--least-fragment 0 --least-piece 0 lay them)\n",
                    counted(sheet.left_out.fragments, "fragment"), sheet.left_out.paint_area * 1e6);
     for (const decal::Plate& plate : sheet.plates)
         fmt::print("plate {}: 100 % is {:.2f} film units\n", plate.name, plate.full);
