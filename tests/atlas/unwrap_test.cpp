@@ -306,6 +306,8 @@ TEST(Unwrap, CutsFramesAmongManyCharts) {
     EXPECT_GT(u.report.charts, whole.report.charts);
     EXPECT_GE(u.report.utilisation, std::min(0.65, 1.2 * whole.report.utilisation));
     EXPECT_NEAR(u.report.l2_stretch, 1, 1e-6);  // halves lie as the whole did
+    options.cutting = Cutting::tight;           // never worse than without asking for it
+    EXPECT_GE(unwrap(m, options).report.utilisation, u.report.utilisation);
 }
 
 TEST(Unwrap, TexelSizeIsKept) {

@@ -26,7 +26,7 @@ constexpr std::size_t kLongCandidates = 16;     // longest charts that are tried
 constexpr std::size_t kCandidatesOfMany = 16;   // charts with the emptiest boxes that are tried of many
 constexpr std::size_t kFewCharts = 48;          // with more, small ones fill the gaps between large ones
 constexpr double kCutGainOfMany = 1.004;        // `kCutGain` for many charts, of which each is a small part
-constexpr double kWithinReach = 0.5;            // of the goal, below which many charts are too narrow for it
+constexpr double kWithinReach = 0.5;            // of what is good enough, below which many charts are too narrow for it
 constexpr double kEmpty = 0.01;                 // of the surface, by which a box is larger than its chart
 constexpr std::size_t kMostTriangles = 200000;  // triangles of a chart that is left as it is
 
@@ -394,7 +394,7 @@ CutToPack cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, 
     CutMesh tried = cut;
     int cuts = 0;
     const bool many = cut.charts.size() > kFewCharts;
-    if (many && use < kWithinReach * goal) return result;
+    if (many && use < kWithinReach * std::min(goal, kGoodUse)) return result;
     const int most_cuts = many ? kMostCutsOfMany : kMostCuts;
     const double gain = many ? kCutGainOfMany : kCutGain;
     for (double now = use; cuts < most_cuts && now < goal;) {
