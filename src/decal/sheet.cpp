@@ -186,7 +186,7 @@ LeftOut leave_out_fragments(const CutFilm& cut, const CoverageFn& coverage, cons
     const std::vector<std::uint32_t> twin = atlas::twin_half_edges(cut.film.mesh);
     const auto is_speck = [&](const Piece& piece) { return piece.paint_area < kSpeck * least; };
     const auto is_sliver = [&](const Piece& piece) {
-        return piece.paint_area < options.least_piece && piece.paint_area < kSliver * area_of(piece.film);
+        return piece.paint_area < options.least_piece && piece.paint_area < kSliver * decal::area_of(piece.film);
     };
     const double few = kSpecksOfAll * paint_where(pieces, [](const Piece&) { return true; });
     const bool no_specks = paint_where(pieces, is_speck) < few, no_slivers = paint_where(pieces, is_sliver) < few;
