@@ -3,8 +3,10 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
+#include <array>
 #include <cfloat>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "core/error.h"
@@ -67,6 +69,40 @@ PolygonSoup soup_of(const TriangleMesh& mesh, const Wedges& wedges, std::span<co
     return soup;
 }
 
+/// Takes out fins: pairs of triangles on the same vertices, back to back, which collapses leave on closed surfaces.
+void drop_fins(const Wedges& wedges, std::vector<std::uint32_t>& corners) {
+    struct Side {
+        std::array<std::uint32_t, 3> vertices;
+        bool turned;
+        std::size_t triangle;
+    };
+    std::vector<Side> sides;
+    sides.reserve(corners.size() / 3);
+    for (std::size_t t = 0; t < corners.size() / 3; ++t) {
+        std::array<std::uint32_t, 3> v;
+        for (std::size_t k = 0; k < 3; ++k) v[k] = wedges.vertex[corners[3 * t + k]];
+        std::rotate(v.begin(), std::min_element(v.begin(), v.end()), v.end());
+        const bool turned = v[1] > v[2];
+        if (turned) std::swap(v[1], v[2]);
+        sides.push_back({v, turned, t});
+    }
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+        return std::tie(a.vertices, a.turned, a.triangle) < std::tie(b.vertices, b.turned, b.triangle);
+    });
+    std::vector<std::uint8_t> fin(sides.size(), 0);
+    for (std::size_t i = 0; i < sides.size();) {
+        std::size_t turn = i, end = i;
+        while (end < sides.size() && sides[end].vertices == sides[i].vertices) turn += !sides[end++].turned;
+        for (std::size_t k = 0; k < std::min(turn - i, end - turn); ++k)
+            fin[sides[i + k].triangle] = fin[sides[turn + k].triangle] = 1;
+        i = end;
+    }
+    std::size_t kept = 0;
+    for (std::size_t c = 0; c < corners.size(); ++c)
+        if (!fin[c / 3]) corners[kept++] = corners[c];
+    corners.resize(kept);
+}
+
 }  // namespace
 
 PolygonSoup decimate(const TriangleMesh& mesh, const DecimateOptions& options) {
@@ -84,7 +120,8 @@ PolygonSoup decimate(const TriangleMesh& mesh, const DecimateOptions& options) {
         meshopt_simplify(corners.data(), wedges.corners.data(), wedges.corners.size(), &positions[0].x,
                          positions.size(), sizeof(Vec3f), most, error, 0, nullptr);
     corners.resize(left);
-    if (left == 0) throw Error("nothing is left of the mesh at this distance");
+    drop_fins(wedges, corners);
+    if (corners.empty()) throw Error("nothing is left of the mesh at this distance");
     return soup_of(mesh, wedges, corners);
 }
 
