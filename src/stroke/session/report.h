@@ -26,7 +26,7 @@ struct Dryness {
     double from = -1;          ///< metres of the path after which the tuft was never wet again for 5 mm; < 0: it was
                                ///< wet at the end
     double path = 0;           ///< metres after `from` on which a stamp left less than 0.6 of a full film, gaps between
-                               ///< hairs counted
+                               ///< hairs counted, and less than 0.9 of what the ink of the start would have left there
 };
 
 /// Poses and places of a stroke that lie within a closed model. They are held on its surface.

@@ -60,6 +60,7 @@ StrokeSession::StrokeSession(SessionInput input)
     contact_.options.method = input_.stroke.settings.contact;
     report_.nearest = std::numeric_limits<double>::infinity();
     report_.dryness.full_at_start = tuft_.brush.reservoir.fullness();
+    ink_at_start_ = tuft_.brush.reservoir;
     if (input_.stroke.settings.endless && !input_.stroke.erases()) refill_ = tuft_.brush.reservoir;
 }
 
@@ -220,7 +221,7 @@ float grain_seen(const ClosedHairOptions& options) {
 
 }  // namespace
 
-void StrokeSession::set_ink(Stamp& stamp, double area) const {
+ink::DepositParams StrokeSession::deposit_from(const ink::Reservoir& tuft, const Stamp& stamp, double area) const {
     const ink::StampContact contact{
         .moment_factor = tuft_.stress(),
         .width = hair_.closed_area() > 0 ? area / std::sqrt(hair_.closed_area()) : std::sqrt(area),
@@ -228,7 +229,11 @@ void StrokeSession::set_ink(Stamp& stamp, double area) const {
         .pending = deposit_->pending(),
         .by_hair = static_cast<double>(stamp.separation),
         .cells = hair_.cells()};
-    stamp.ink = ink::stamp_deposit(tuft_.brush.reservoir, tuft_.ink, contact, input_.substrate);
+    return ink::stamp_deposit(tuft, tuft_.ink, contact, input_.substrate);
+}
+
+void StrokeSession::set_ink(Stamp& stamp, double area) const {
+    stamp.ink = deposit_from(tuft_.brush.reservoir, stamp, area);
     // What a pressed sponge does not hold comes out with its film.
     if (brush::is_foam(tuft_.preset()) && area > 0)
         stamp.ink.target +=
@@ -241,12 +246,17 @@ void StrokeSession::set_ink(Stamp& stamp, double area) const {
     stamp.ink.capacity = std::max(input_.substrate.capacity, static_cast<float>(ink::standing_film(tuft_.ink.yield)));
 }
 
-void StrokeSession::note_dryness(double film, double displacement) {
+void StrokeSession::note_dryness(const Stamp& stamp, double area, double closed, double displacement) {
     constexpr double kDry = 0.6;        // of a full film: what is paler looks torn
+    constexpr double kSpent = 0.9;      // of what the brush gave at first: a light or a small one is pale when full
     constexpr double kWetAgain = 5e-3;  // metres of full film after which a stroke is no longer dry
     Dryness& dryness = report_.dryness;
     report_.path += displacement;
-    if (film < kDry * tuft_.ink.film) {
+    const auto film = static_cast<double>(stamp.ink.target);
+    const auto is_spent = [&] {
+        return film < kSpent * static_cast<double>(deposit_from(ink_at_start_, stamp, area).target);
+    };
+    if (film * closed < kDry * tuft_.ink.film && is_spent()) {
         if (dryness.from < 0) dryness.from = report_.path;
         dryness.path += displacement;
         wet_from_ = report_.path;
@@ -276,7 +286,7 @@ void StrokeSession::step(const brush::Pose& pose) {
     ++report_.stamps;
     set_motion(stamp, moved, area);
     set_ink(stamp, area);
-    note_dryness(static_cast<double>(stamp.ink.target) * hair_.coverage(hair_area), glm::length(moved.hand));
+    note_dryness(stamp, area, hair_.coverage(hair_area), glm::length(moved.hand));
     report_.ink_given +=
         deposit_->deposit(std::move(stamp), tuft_,
                           {.hair = hair_,

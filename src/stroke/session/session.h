@@ -142,7 +142,8 @@ class StrokeSession {
     void leave_forecast();
     void set_motion(Stamp& stamp, const ContactMotion& moved, double area) const;
     void set_ink(Stamp& stamp, double area) const;
-    void note_dryness(double film, double displacement);
+    ink::DepositParams deposit_from(const ink::Reservoir& tuft, const Stamp& stamp, double area) const;
+    void note_dryness(const Stamp& stamp, double area, double closed, double displacement);
 
     SessionInput input_;
     TuftInHand tuft_;
@@ -156,7 +157,8 @@ class StrokeSession {
     ForceLog forces_;
     StrokeReport report_;
     Progress progress_;
-    double wet_from_ = 0;                   // metres of the hand's path up to the last stamp that lacked ink
+    double wet_from_ = 0;  // metres of the hand's path up to the last stamp that lacked ink
+    ink::Reservoir ink_at_start_;
     std::optional<ink::Reservoir> refill_;  // what the tuft holds before every pose; none: it runs dry
 };
 
