@@ -117,6 +117,15 @@ TEST(LongLines, ABrushThatNeverRunsDryNeedsNoSecondDip) {
     EXPECT_EQ(settings_from_json(to_json(settings)), settings);
 }
 
+// It is as full at every pose as at first, so no paleness is for want of ink: exact. A brush of a tenth of the size
+// holds a thousandth of the ink, and is pale from the first millimetre on.
+TEST(LongLines, ASmallBrushThatIsAlwaysFullIsNotSaidToRunDry) {
+    const Drawn line = drawn(along({{0, 0}, {0.004, 0}}), false, "goat-medium*0.1", "titanium-white", true);
+    ASSERT_EQ(line.reports.size(), 1u);
+    EXPECT_FALSE(line.reports[0].ran_dry());
+    EXPECT_EQ(line.reports[0].dryness.path, 0);
+}
+
 TEST(LongLines, ARingIsClosedAndFullAllRound) {
     std::vector<Vec2> ring;
     for (int i = 0; i <= 180; ++i)
