@@ -339,10 +339,14 @@ double angle_of(const Vec2& ahead) {
     return std::atan2(-ahead.y, ahead.x);
 }
 
+constexpr double kLeastTrail = 0.02;  // of the tuft's length: what trails less is pressed straight down
+
 /// Direction of a hand that sets a dot: towards the side that the holder leans to; upright, of a wide ferrule y, of a
-/// round one to the right and down, as a right hand goes. Zero for a blade, which is led along its line.
+/// round one to the right and down, as a right hand goes. Zero for a blade, which is led along its line, and for a
+/// sponge, which does not trail.
 Vec2 dot_direction(const StrokeSample& first, const HolderOptions& options) {
-    if (options.blade_landing > 0) return Vec2{0};
+    const double trails = tip_lag_length(options.tip_lag, options.working_depth);
+    if (options.blade_landing > 0 || !(trails > kLeastTrail * options.tuft_length)) return Vec2{0};
     if (options.across || options.turned) {
         const Vec2 across = across_of(first.roll);
         return glm::dot(first.tilt, across) < 0 ? -across : across;
