@@ -79,7 +79,7 @@ Vec3 HairSolver::paste_drag(const Vec3& velocity) const {
             const brush::Section& s = branch.sections[i];
             if (s.pressure > 0) area += 2 * s.a * glm::distance(s.centre, branch.sections[i - 1].centre);
         }
-    return -options_.yield_stress * area * velocity / (glm::length(velocity) + kSmooth);
+    return -options_.added.yield_stress * area * velocity / (glm::length(velocity) + kSmooth);
 }
 
 HairAnswer HairSolver::solve(const RootPose& pose) {
@@ -98,11 +98,11 @@ HairAnswer HairSolver::solve(const RootPose& pose) {
     answer.touching = result.tuft.touching;
     answer.converged = result.tuft.converged;
     state_ = std::move(result.tuft);
-    if (options_.yield_stress > 0 && answer.touching && dt > 0)
+    if (options_.added.yield_stress > 0 && answer.touching && dt > 0)
         answer.force += paste_drag((pose.position - last_.position) / dt);
-    if (options_.proximity_force > 0 && result.triangle != kNone) {
+    if (options_.added.proximity > 0 && result.triangle != kNone) {
         constexpr double kReach = 1e-3;  // m: 0.1 N over a tenth of it would be 1,000 N/m
-        answer.force += options_.proximity_force * smooth_step(1 - answer.distance / kReach) * result.frame.n;
+        answer.force += options_.added.proximity * smooth_step(1 - answer.distance / kReach) * result.frame.n;
     }
     bound_root(pose, answer);
     last_ = pose;

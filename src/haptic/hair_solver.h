@@ -12,11 +12,17 @@
 /// root. The solver's thread calls it (loop.h), and the trial in virtual time (trial.h). Deterministic.
 namespace tuft::haptic {
 
+/// What the hand feels besides hair. Plain data.
+struct AddedForces {
+    double proximity = 0;     ///< N on the hair's scale, rises over the last millimetre before the hair touches
+    double yield_stress = 0;  ///< τ_y, Pa, of paste under the hair
+    bool operator==(const AddedForces&) const = default;
+};
+
 /// Options of `HairSolver`.
 struct SolverOptions {
     contact::Options contact;
-    double proximity_force = 0;   ///< N on the hair's scale, rises over the last millimetre before the hair touches
-    double yield_stress = 0;      ///< τ_y, Pa, of paste under the hair
+    AddedForces added;
     double handle_length = 0.15;  ///< m, from the ferrule's mouth
     double ferrule_wall = 5e-4;   ///< m, by which ferrule and handle are thicker than the tuft's root
 };
@@ -33,6 +39,8 @@ class HairSolver {
 
     /// What the stroke has made of the hair: 0 dry … 1 wet, and ink over capacity.
     void set_ink(double wetness, double ink_left);
+    void set_added(const AddedForces& added) { options_.added = added; }
+    const AddedForces& added() const { return options_.added; }
     const brush::Tuft& tuft() const { return tuft_; }
     /// The bent tuft of the last solve, for drawing it.
     const brush::TuftState& state() const { return state_; }

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <set>
+#include <map>
 #include <thread>
 
 #include "core/system/recycled.h"
@@ -73,6 +73,7 @@ struct Latest {
     TripleBuffer<ServoControl> control;
     TripleBuffer<LawOptions> law;
     TripleBuffer<Ink> ink;
+    TripleBuffer<AddedForces> added;
     TripleBuffer<LoopStatus> status;
 };
 
@@ -82,11 +83,17 @@ struct RecentForces {
     std::atomic<std::uint64_t> n{0};
 };
 
+/// A period whose pose was solved.
+struct SolvedTick {
+    std::uint64_t tick = 0;
+    AddedForces added;
+};
+
 struct Record {
     BoundedQueue<RecordedPeriod, 4096> periods;
-    BoundedQueue<std::uint64_t, 4096> solved_ticks;
+    BoundedQueue<SolvedTick, 4096> solved_ticks;
     std::vector<RecordedPeriod> recording;  // of the record's thread until it ends
-    std::set<std::uint64_t> recorded_ticks;
+    std::map<std::uint64_t, AddedForces> recorded_ticks;
 
     void drain();
 };
@@ -246,21 +253,23 @@ void Loop::State::run_solver() {
         if (!latest.pose.read(asked)) continue;
         Ink fresh;
         if (latest.ink.read(fresh)) solver.set_ink(fresh.wetness, fresh.left);
+        AddedForces added;
+        if (latest.added.read(added)) solver.set_added(added);
         const HairAnswer found = solver.solve(asked);
         latest.answer.write(found);
         answered.post();
         counts.solver_allocations.store(allocations() - allocated, std::memory_order_relaxed);
         if (!found.converged) counts.unconverged.fetch_add(1, std::memory_order_relaxed);
         solved.push({asked, found.touching});
-        if (options.record) record.solved_ticks.push(asked.tick);
+        if (options.record) record.solved_ticks.push({asked.tick, solver.added()});
     }
 }
 
 void Record::drain() {
     RecordedPeriod period;
     while (periods.pop(period)) recording.push_back(period);
-    std::uint64_t tick = 0;
-    while (solved_ticks.pop(tick)) recorded_ticks.insert(tick);
+    SolvedTick solved;
+    while (solved_ticks.pop(solved)) recorded_ticks[solved.tick] = solved.added;
 }
 
 void Loop::State::run_record() {
@@ -314,6 +323,10 @@ void Loop::set_ink(double wetness, double ink_left) {
     state_->latest.ink.write({wetness, ink_left});
 }
 
+void Loop::set_added(const AddedForces& added) {
+    state_->latest.added.write(added);
+}
+
 LoopStatus Loop::status() {
     state_->latest.status.read(state_->seen);
     return state_->seen;
@@ -332,8 +345,11 @@ bool Loop::pop(SolvedPose& pose) {
 }
 
 std::vector<RecordedPeriod> Loop::take_recording() {
-    for (RecordedPeriod& period : state_->record.recording)
-        period.solved = state_->record.recorded_ticks.contains(period.tick);
+    for (RecordedPeriod& period : state_->record.recording) {
+        const auto solved = state_->record.recorded_ticks.find(period.tick);
+        period.solved = solved != state_->record.recorded_ticks.end();
+        if (period.solved) period.added = solved->second;
+    }
     return std::move(state_->record.recording);
 }
 

@@ -82,6 +82,8 @@ class Loop {
     void set_law(const LawOptions& law);
     /// What the stroke has made of the hair, see `HairSolver::set_ink`.
     void set_ink(double wetness, double ink_left);
+    /// What is felt besides hair; a recording keeps it.
+    void set_added(const AddedForces& added);
     LoopStatus status();
     /// The sizes of the force in the last 3 s, N, oldest first.
     std::vector<float> recent_forces() const;

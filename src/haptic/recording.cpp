@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 #include <time.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <fstream>
 #include <map>
 #include <ostream>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
 
@@ -16,22 +18,8 @@ namespace tuft::haptic {
 namespace {
 
 constexpr std::string_view kColumns = "tick,fresh,x,y,z,qw,qx,qy,qz,buttons,control,answer,solved,fx,fy,fz";
-constexpr std::size_t kNumbers = 16, kLongestLine = 1000, kMostPeriods = 1 << 24;  // four hours
-
-bool read_numbers(const std::string& line, std::array<double, kNumbers>& values) {
-    const char* at = line.data();
-    const char* end = at + line.size();
-    for (std::size_t i = 0; i < kNumbers; ++i) {
-        const auto [next, error] = std::from_chars(at, end, values[i]);
-        if (error != std::errc{}) return false;
-        at = next;
-        if (i + 1 < kNumbers) {
-            if (at == end || *at != ',') return false;
-            ++at;
-        }
-    }
-    return at == end || *at == '\r';
-}
+constexpr std::string_view kAdded = ",proximity,yield";
+constexpr std::size_t kNumbers = 16, kNumbersAdded = 18, kLongestLine = 1000, kMostPeriods = 1 << 24;  // four hours
 
 std::uint64_t whole(double value) {
     return value >= 0 && value < 1e15 ? static_cast<std::uint64_t>(value) : 0;  // also for NaN
@@ -45,14 +33,32 @@ std::int64_t now_ns() {
 
 }  // namespace
 
+bool read_row(std::string_view line, std::span<double> values) {
+    const char* at = line.data();
+    const char* end = at + line.size();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const auto [next, error] = std::from_chars(at, end, values[i]);
+        if (error != std::errc{}) return false;
+        at = next;
+        if (i + 1 < values.size()) {
+            if (at == end || *at != ',') return false;
+            ++at;
+        }
+    }
+    return at == end || *at == '\r';
+}
+
 void write_recording(std::ostream& out, std::span<const RecordedPeriod> periods) {
-    out << kColumns << '\n';
+    const bool added = std::ranges::any_of(periods, [](const auto& p) { return p.added != AddedForces{}; });
+    out << kColumns << (added ? kAdded : "") << '\n';
     for (const RecordedPeriod& p : periods) {
         const Vec3 &x = p.state.position, &f = p.force;
         const Quat& q = p.state.rotation;
         const int control = p.control.paused + 2 * p.control.emergency + 4 * p.control.clutched;
-        out << fmt::format("{},{:d},{},{},{},{},{},{},{},{},{},{},{:d},{},{},{}\n", p.tick, p.fresh, x.x, x.y, x.z, q.w,
+        out << fmt::format("{},{:d},{},{},{},{},{},{},{},{},{},{},{:d},{},{},{}", p.tick, p.fresh, x.x, x.y, x.z, q.w,
                            q.x, q.y, q.z, p.state.buttons, control, p.answer, p.solved, f.x, f.y, f.z);
+        if (added) out << fmt::format(",{},{}", p.added.proximity, p.added.yield_stress);
+        out << '\n';
     }
 }
 
@@ -61,11 +67,15 @@ std::vector<RecordedPeriod> read_recording(const std::filesystem::path& file) {
     if (!in) throw Error(file.string(), "cannot be read");
     std::string line;
     std::vector<RecordedPeriod> periods;
+    std::size_t numbers = kNumbers;
     for (long number = 1; std::getline(in, line); ++number) {
         if (line.size() > kLongestLine) throw Error(file.string(), number, "this line is too long for a recording");
-        if (number == 1 && line.starts_with(kColumns)) continue;
-        std::array<double, kNumbers> v{};
-        if (number == 1 || !read_numbers(line, v))
+        if (number == 1 && line.starts_with(kColumns)) {
+            if (line.substr(kColumns.size()).starts_with(kAdded)) numbers = kNumbersAdded;
+            continue;
+        }
+        std::array<double, kNumbersAdded> v{};
+        if (number == 1 || !read_row(line, std::span(v).first(numbers)))
             throw Error(file.string(), number, Message("expected {}", std::string(kColumns)));
         RecordedPeriod p;
         p.tick = whole(v[0]);
@@ -79,6 +89,7 @@ std::vector<RecordedPeriod> read_recording(const std::filesystem::path& file) {
         p.answer = whole(v[11]);
         p.solved = v[12] != 0;
         p.force = {v[13], v[14], v[15]};
+        p.added = {v[16], v[17]};
         if (!periods.empty() && p.tick <= periods.back().tick)
             throw Error(file.string(), number, "the ticks of a recording rise");
         if (periods.size() == kMostPeriods) throw Error(file.string(), number, "a recording of more than four hours");
@@ -90,16 +101,18 @@ std::vector<RecordedPeriod> read_recording(const std::filesystem::path& file) {
 std::vector<Vec3> replay_forces(std::span<const RecordedPeriod> periods, HairSolver solver, const LawOptions& law,
                                 const Workspace& workspace) {
     Servo servo(law);
-    std::map<std::uint64_t, RootPose> waiting;
+    std::map<std::uint64_t, std::pair<RootPose, AddedForces>> waiting;
     std::map<std::uint64_t, HairAnswer> answers;
     std::vector<Vec3> forces;
     for (const RecordedPeriod& p : periods) {
         ServoControl control = p.control;
         control.workspace = workspace;
         const RootPose pose = servo.begin(p.tick, p.fresh ? &p.state : nullptr, control);
-        if (p.solved) waiting.emplace(p.tick, pose);
+        if (p.solved) waiting.emplace(p.tick, std::pair{pose, p.added});
         while (!waiting.empty() && waiting.begin()->first <= p.answer) {
-            answers[waiting.begin()->first] = solver.solve(waiting.begin()->second);
+            const auto& [asked, added] = waiting.begin()->second;
+            solver.set_added(added);
+            answers[waiting.begin()->first] = solver.solve(asked);
             waiting.erase(waiting.begin());
         }
         const auto newest = answers.find(p.answer);

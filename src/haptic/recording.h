@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iosfwd>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "haptic/hair_solver.h"
@@ -23,15 +24,20 @@ struct RecordedPeriod {
     std::uint64_t answer = 0;  ///< tick of the answer that was the newest; 0: none
     bool solved = false;       ///< the pose of this period was solved
     Vec3 force{0};             ///< N, on the hand, world
+    AddedForces added;         ///< besides the hair's
 };
 
+/// Reads numbers with commas between them. Returns false unless the line holds just so many.
+bool read_row(std::string_view line, std::span<double> values);
+
 /// Writes columns tick,fresh,x,y,z,qw,qx,qy,qz,buttons,control,answer,solved,fx,fy,fz with all digits. `control`: 1
-/// paused, 2 emergency, 4 clutched.
+/// paused, 2 emergency, 4 clutched. Where there are added forces, proximity,yield follow in N and Pa.
 void write_recording(std::ostream& out, std::span<const RecordedPeriod> periods);
 /// Reads such a table. Throws `Error` with file and line.
 std::vector<RecordedPeriod> read_recording(const std::filesystem::path& file);
 
-/// Runs the servo and the solver through a recording; returns the force of each period, N, world.
+/// Runs the servo and the solver through a recording, with the added forces of the recording; returns the force of each
+/// period, N, world.
 std::vector<Vec3> replay_forces(std::span<const RecordedPeriod> periods, HairSolver solver, const LawOptions& law,
                                 const Workspace& workspace = {});
 

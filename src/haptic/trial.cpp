@@ -68,7 +68,10 @@ TrialReport run_trial(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface
             report.most_evaluations = std::max(report.most_evaluations, work.evaluations + work.values);
             report.evaluations += static_cast<std::uint64_t>(work.evaluations + work.values);
             report.seconds.push_back(static_cast<float>(answer.seconds));
-            if (options.record) report.roots.push_back({pose, answer.touching});
+            if (options.record) {
+                report.roots.push_back({pose, answer.touching});
+                report.arms.push_back(arm.position());
+            }
         }
         const ServoOutput out = servo.finish(answered ? &answer : nullptr);
         arm.command(out.command, time);

@@ -49,7 +49,7 @@ struct TrialOptions {
     double delay = 0, jitter = 0;  ///< s, of commands on their way to the motors
     double seconds = 4;
     std::uint64_t seed = 1;
-    bool record = false;  ///< fills `TrialReport::forces` and `roots`
+    bool record = false;  ///< fills `TrialReport::forces`, `roots` and `arms`
 };
 
 /// Extremes over a trial. Energies are the work of the force on the hand along the true path of the arm, not along the
@@ -69,7 +69,8 @@ struct TrialReport {
     std::uint64_t hash = 0;         ///< of all forces
     std::vector<Vec3> forces;       ///< N, on the hand, one per period
     std::vector<SolvedPose> roots;
-    Vec3 last_hair{0};  ///< N, of the hair at the end
+    std::vector<Vec3> arms;  ///< m, where the arm truly was at each of `roots`
+    Vec3 last_hair{0};       ///< N, of the hair at the end
 };
 
 /// Moves the simulated hand along `path` and returns what happened. Virtual time: the same input gives the same bits.

@@ -88,6 +88,25 @@ TEST_F(Device, ARecordingPlaysAgainToTheBit) {
     EXPECT_EQ(read(path("a.csv")), read(path("b.csv")));
 }
 
+// The recording says what was felt besides hair, so that it needs no option when it is played again.
+TEST_F(Device, AHandFollowsATableAndFeelsPaste) {
+    write("way.csv", "t,x,y,z\n0,0,0,0.1\n0.1,0,0,0.1\n0.4,0.01,0,0.1\n");
+    test::Ran ran = tuft("device record --simulate touch --model sheet --proximity 0.1 --paste 400 --follow '" +
+                         path("way.csv") + "' --seconds 0.6 -o '" + path("a.csv") + "' --json");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const std::string table = read(path("a.csv"));
+    EXPECT_NE(table.find(",proximity,yield\n"), std::string::npos);
+    EXPECT_NE(table.find(",400\n"), std::string::npos);
+    const std::size_t last = table.rfind('\n', table.size() - 2);
+    double tick = 0, fresh = 0, x = 0;
+    ASSERT_EQ(std::sscanf(table.c_str() + last + 1, "%lf,%lf,%lf", &tick, &fresh, &x), 3);
+    EXPECT_NEAR(x, 0.01, 1e-3);  // m, what the arm's friction of 0.2 N leaves of the spring's 300 N/m
+    ran = tuft("device record --simulate touch --model sheet --replay '" + path("a.csv") + "' -o '" + path("b.csv") +
+               "'");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_EQ(table, read(path("b.csv")));
+}
+
 TEST_F(Device, SimulateServesAnArmThatListAndRecordFind) {
     const Served server(tuft_program(), "device simulate --preset omega.6 --port 0");
     ASSERT_GT(server.port, 0);

@@ -5,11 +5,13 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <thread>
 
 #include "core/error.h"
 #include "core/system/allocations.h"
 #include "haptic/device/exchange.h"
+#include "haptic/followed_path.h"
 #include "trial_model.h"
 
 namespace tuft::haptic {
@@ -111,6 +113,99 @@ TEST(Loop, ARecordedSessionGivesTheSameForcesWhenItIsPlayedAgain) {
     const std::vector<RecordedPeriod> read = read_recording(file);
     std::filesystem::remove(file);
     EXPECT_EQ(replay_forces(read, HairSolver(live.tuft, *live.f.surface), live.law), forces);
+}
+
+TEST(Recording, AddedForcesAreKeptAndFelt) {
+    const TrialModel f = load_trial_model("sheet");
+    const brush::Tuft tuft = tuft_of("wolf-small");
+    const HandPath path = hand_path(HandMotion::drag, f.place, tuft.preset);
+    std::vector<RecordedPeriod> periods;
+    for (std::uint64_t tick = 1; tick <= 1700; ++tick) {
+        const HandTarget at = path(static_cast<double>(tick) * kPeriod);
+        periods.push_back(
+            {.tick = tick,
+             .fresh = true,
+             .state = {.time = static_cast<double>(tick) * kPeriod, .position = at.position, .rotation = at.rotation},
+             .answer = tick,
+             .solved = tick > 100});
+    }
+    const LawOptions law{.limits = device_preset("inverse3")};
+    const auto forces = [&] { return replay_forces(periods, HairSolver(tuft, *f.surface), law); };
+    const std::vector<Vec3> plain = forces();
+    std::ostringstream before;
+    write_recording(before, periods);
+    EXPECT_TRUE(before.str().starts_with("tick,fresh,x,y,z,qw,qx,qy,qz,buttons,control,answer,solved,fx,fy,fz\n"));
+    for (RecordedPeriod& p : periods) p.added = {.proximity = 0.01, .yield_stress = 400};
+    const std::vector<Vec3> felt = forces();
+    EXPECT_NE(felt, plain);
+    const std::string file = testing::TempDir() + "/tuft_added_" + std::to_string(::getpid()) + ".csv";
+    {
+        std::ofstream out(file);
+        write_recording(out, periods);
+    }
+    periods = read_recording(file);
+    std::filesystem::remove(file);
+    EXPECT_EQ(forces(), felt);
+}
+
+// An arm moves by itself, then a hand follows what was recorded while a force of a newton pulls at it.
+TEST(FollowedPath, AHandFollowsARecordingWithinTheSagOfItsSpring) {
+    const TrialPlace place{"plane", make_frame({0, 0, 0}, {0, 0, 1}, {1, 0, 0})};
+    const DeviceLimits& limits = device_preset("touch");
+    SimulatedArm first(limits, hand_path(HandMotion::drag, place, brush::load_preset("wolf-small")));
+    std::vector<RecordedPeriod> periods;
+    std::vector<Vec3> truth;
+    for (std::uint64_t tick = 1; tick <= 3000; ++tick) {
+        first.advance(static_cast<double>(tick) * kPeriod);
+        periods.push_back({.tick = tick, .fresh = true, .state = first.measure()});
+        truth.push_back(first.position());
+    }
+    const std::string file = testing::TempDir() + "/tuft_way_" + std::to_string(::getpid()) + ".csv";
+    {
+        std::ofstream out(file);
+        write_recording(out, periods);
+    }
+    const std::vector<TimedPlace> places = read_followed_path(file);
+    std::filesystem::remove(file);
+    const double begin = 0.0045;  // s, middle of the first eight periods
+    const HandPath path = followed_path(places);
+    SimulatedArm arm(limits, path);
+    const HandModel hand;
+    double inertia = 0, from_truth = 0, sag = 0;
+    for (std::size_t i = 10; i + 10 < truth.size(); ++i) {
+        const double time = static_cast<double>(i + 1) * kPeriod - begin;
+        arm.advance(time);
+        arm.command({.force = {0, 0, 1}}, time);
+        const HandTarget at = path(time);
+        from_truth = std::max(from_truth, glm::distance(at.position, truth[i]));
+        if (time < 1) continue;  // until the pull has settled
+        sag = std::max(sag, glm::distance(arm.position(), at.position));
+        inertia =
+            std::max(inertia, (limits.mass + hand.mass) *
+                                      glm::distance(path(time + 5e-3).velocity, path(time - 5e-3).velocity) / 1e-2 +
+                                  limits.damping * glm::length(at.velocity));
+    }
+    EXPECT_LT(from_truth, limits.count);
+    EXPECT_GT(sag, 0.9 / hand.stiffness - limits.friction / hand.stiffness);
+    // A spring answers what begins at once with no more than twice its sag.
+    EXPECT_LT(sag, (1 + 2 * (limits.friction + inertia)) / hand.stiffness);
+}
+
+TEST(FollowedPath, ATableOfTimesAndPlacesIsAWay) {
+    const std::string file = testing::TempDir() + "/tuft_table_" + std::to_string(::getpid()) + ".csv";
+    std::ofstream(file) << "t,x,y,z\n5,0,0,0.05\n6,0.01,0,0.05\n7,0.03,0,0.05\n";
+    const HandPath path = followed_path(read_followed_path(file));
+    EXPECT_EQ(path(-1).position, (Vec3{0, 0, 0.05}));
+    EXPECT_NEAR(path(1).position.x, 0.01, 1e-15);
+    EXPECT_NEAR(path(1).velocity.x, 0.015, 1e-15);  // the slope between its neighbours
+    EXPECT_EQ(path(9).position, (Vec3{0.03, 0, 0.05}));
+    EXPECT_EQ(path(9).velocity, Vec3{0});
+    for (const char* broken : {"t,x,y,z\n", "t,x,y,z\n1,2,3\n", "t,x,y,z\n1,0,0,0\n1,0,0,0\n", "t,x,y,z\n1,9,0,0\n",
+                               "t,x,y,z\nnan,0,0,0\n", "t,x,y,z,qw,qx,qy,qz\n1,0,0,0,0,0,0,0\n", "a,b\n1,2\n", ""}) {
+        std::ofstream(file) << broken;
+        EXPECT_THROW(read_followed_path(file), Error) << broken;
+    }
+    std::filesystem::remove(file);
 }
 
 TEST(Recording, BrokenTablesAreOneClearError) {

@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "../brush/reference.h"
 #include "brush/preset/preset.h"
+#include "core/text/units.h"
 #include "trial_model.h"
 
 namespace tuft::haptic {
@@ -288,6 +290,86 @@ TEST(Trial, SteadyForceIsTheHairsAtTheVirtualRoot) {
     }
 }
 
+/// Normal force of the reference, N, of a straight rod at 85° to a plane without friction, whose root stands at
+/// `height`.
+double rod_on_plane(const brush::Preset& p, double height) {
+    const double depth = std::sin(85 * kDegree) - height / p.length;
+    std::vector<Vec2> known;  // depth over length, N L² / B0
+    for (const Row& row : read_rows("rod_on_plane.csv"))
+        if (row["alpha"] == p.alpha && row["beta"] == p.beta && row["tilt_deg"] == 85 && row.text("drag") == "none")
+            known.emplace_back(row["depth_over_L"], row["N_L2_E0I0"]);
+    for (std::size_t i = 1; i < known.size(); ++i)
+        if (known[i - 1].x <= depth && depth < known[i].x) {
+            const double u = std::log(depth / known[i - 1].x) / std::log(known[i].x / known[i - 1].x);
+            return std::pow(known[i - 1].y, 1 - u) * std::pow(known[i].y, u) * p.stiffness / (p.length * p.length);
+        }
+    ADD_FAILURE() << "no reference at depth " << depth;
+    return 0;
+}
+
+// An ideal rod for hair, through arm, coupling, law and solver: what the hand holds is what the reference says of a rod
+// whose root is where the virtual root has come to rest.
+TEST(Trial, SteadyForceOfAnUprightPressIsThatOfARodOnAPlane) {
+    const TrialModel f = load_trial_model("sheet");
+    brush::Preset p = brush::load_preset("wolf-medium");
+    p.alpha = p.beta = -0.5;
+    p.stiffness = 5e-5;
+    p.tip_stiffness = p.yield = p.plastic_share = p.recovery = p.end_compliance = p.adhesion = 0;
+    p.friction_wet = p.friction_dry = p.with_hair = p.pore_grip = 0;
+    p.radius = p.tip_radius = 1e-4;
+    p.transverse_stiffness = 1e6;
+    const brush::Tuft tuft = brush::make_tuft(p, 1);
+    const Quat lean = glm::angleAxis(5 * kDegree, Vec3{0, 1, 0});
+    for (const DeviceLimits& limits : device_presets()) {
+        TrialOptions options = options_for(limits);
+        options.law.gain = 4;
+        options.record = true;
+        const auto path = [&](double t) {
+            const double up = 1.1 - 0.3 * std::clamp((t - 1) / 0.5, 0.0, 1.0);
+            return HandTarget{.position = f.place.frame.origin + Vec3{0, 0, up * p.length}, .rotation = lean};
+        };
+        const TrialReport r = run_trial(tuft, *f.surface, path, options);
+        const double height = r.roots.back().pose.position.z - f.place.frame.origin.z;
+        const double expected = options.law.gain * rod_on_plane(p, height);
+        EXPECT_NEAR(r.forces.back().z, expected, 0.02 * expected) << limits.name << " " << height / p.length;
+    }
+}
+
+// With the softness of the coupling taken away the hand has what the hair would give where the hand itself is.
+TEST(Trial, WithRestoreAHandAtRestHasTheForceOfTheHairAtTheArm) {
+    const brush::Tuft tuft = tuft_of("wolf-medium");
+    for (const auto& [place, device] : {std::pair("bowl", "inverse3"), std::pair("roof", "falcon")}) {
+        const TrialModel f = load_trial_model(place);
+        const DeviceLimits& limits = device_preset(device);
+        TrialOptions options = options_for(limits);
+        options.law.restore = true;
+        const TrialReport r = rest_on(f, tuft, options);
+        HairSolver there(tuft, *f.surface);
+        HairAnswer answer;
+        for (std::size_t i = 0; i < r.roots.size(); ++i) {
+            RootPose pose = r.roots[i].pose;
+            pose.position = r.arms[i];
+            answer = there.solve(pose);
+        }
+        const Vec3 hair = options.law.gain * answer.force;
+        EXPECT_GT(glm::length(hair), 0.1) << place;
+        EXPECT_LT(glm::distance(r.forces.back(), hair), 0.03 * glm::length(hair)) << place << " " << limits.name;
+    }
+}
+
+// The wire may take half a millisecond longer for one force than for another.
+TEST(Trial, JitterOfTheWireGivesNothingBack) {
+    const TrialModel f = load_trial_model("sheet");
+    const brush::Tuft tuft = tuft_of("wolf-medium");
+    for (const DeviceLimits& limits : device_presets())
+        for (const HandMotion motion : {HandMotion::taps, HandMotion::rocking}) {
+            TrialOptions options = options_for(limits);
+            options.jitter = 5e-4;
+            const TrialReport r = run_trial(tuft, *f.surface, hand_path(motion, f.place, tuft.preset), options);
+            EXPECT_GE(r.least_energy, -kMicrojoule) << limits.name << " " << name_of(motion);
+        }
+}
+
 TEST(Trial, SameOptionsGiveTheSameBits) {
     const TrialModel f = load_trial_model("bowl");
     const brush::Tuft tuft = tuft_of("goat-small");
@@ -302,10 +384,38 @@ TEST(Trial, PasteDragsAgainstTheMotionAndStaysPassive) {
     TrialOptions options = options_for(device_preset("omega.6"));
     const auto path = hand_path(HandMotion::circles, f.place, tuft.preset);
     const double without = run_trial(tuft, *f.surface, path, options).largest_force;
-    options.solver.yield_stress = 300;  // Pa, of stiff oil paint
+    options.solver.added.yield_stress = 300;  // Pa, of stiff oil paint
     const TrialReport paste = run_trial(tuft, *f.surface, path, options);
     EXPECT_GT(paste.largest_force, without);
     EXPECT_GE(paste.least_energy, -kMicrojoule);
+}
+
+// A tenth of a newton on the hand over the last millimetre, and heavy body colour under the hair.
+TEST(Trial, ProximityAndPasteTogetherGiveBackNothing) {
+    const TrialModel f = load_trial_model("sheet");
+    const brush::Tuft tuft = tuft_of("wolf-medium");
+    for (const DeviceLimits& limits : device_presets())
+        for (const HandMotion motion : {HandMotion::taps, HandMotion::circles, HandMotion::press}) {
+            TrialOptions options = options_for(limits);
+            options.solver.added = {.proximity = 0.1 / options.law.gain, .yield_stress = 400};
+            const TrialReport r = run_trial(tuft, *f.surface, hand_path(motion, f.place, tuft.preset), options);
+            EXPECT_GE(r.least_energy, -kMicrojoule) << limits.name << " " << name_of(motion);
+            EXPECT_LE(r.largest_step, allowed_step(limits)) << limits.name << " " << name_of(motion);
+        }
+}
+
+TEST(Trial, ProximityIsFeltBeforeTheHairTouches) {
+    const TrialModel f = load_trial_model("sheet");
+    const brush::Tuft tuft = tuft_of("wolf-medium");
+    HairSolver solver(tuft, *f.surface, {.added = {.proximity = 0.01}});
+    solver.set_ink(0, 0);  // no film that pulls at it
+    RootPose pose{.position = f.place.frame.origin + (tuft.preset.length + 2e-3) * f.place.frame.n};
+    EXPECT_EQ(solver.solve(pose).force, Vec3{0});
+    pose.position -= 1.5e-3 * f.place.frame.n;
+    pose.tick = 1;
+    const HairAnswer near = solver.solve(pose);
+    EXPECT_FALSE(near.touching);
+    EXPECT_NEAR(glm::dot(near.force, f.place.frame.n), 0.005, 1.5e-3);  // halfway, but for the point's radius
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -331,10 +332,18 @@ struct ArmChoice {
 
 /// What a simulated arm and its hand do.
 struct ArmSimulation {
-    std::string motion = "circles";  ///< of the hand
-    std::string fault = "none";      ///< of the server, after `fault_after` seconds
-    double fault_after = 3;          ///< seconds of a connection
-    double delay_ms = 0;             ///< of a force on its way
+    std::string motion = "circles";   ///< of the hand
+    std::string fault = "none";       ///< of the server, after `fault_after` seconds
+    double fault_after = 3;           ///< seconds of a connection
+    double delay_ms = 0;              ///< of a force on its way
+    std::optional<double> jitter_ms;  ///< added to it, uniform; none: 0.5 where there is a delay
+    std::filesystem::path follow;     ///< table of where the hand goes in place of a motion, or empty
+};
+
+/// What a hand feels besides hair.
+struct ArmAdded {
+    double proximity = 0;  ///< N on the hand, before the hair touches
+    double paste = 0;      ///< Pa, yield stress of paste under the hair
 };
 
 /// What `tuft device test` tries beside its checks.
@@ -351,6 +360,7 @@ struct DeviceWork {
     ArmChoice arm;
     ArmSimulation simulation;
     ArmTrial trial;
+    ArmAdded added;
     double seconds = 10;
     std::string brush = "wolf-medium";
     std::filesystem::path model;  ///< empty: the shipped bowl

@@ -27,11 +27,28 @@ void add_hand(CLI::App* app, DeviceWork& d) {
 void add_motion(CLI::App* app, DeviceWork& d) {
     app->add_option("--motion", d.simulation.motion, "what the simulated hand does (default: circles)")
         ->check(CLI::IsMember({"press", "press-fast", "drag", "circles", "taps", "rocking", "rest", "hit", "slide"}));
+    app->add_option("--follow", d.simulation.follow,
+                    "where the simulated hand goes in place of a motion (.csv): columns t,x,y,z or "
+                    "t,x,y,z,qw,qx,qy,qz in seconds and metres, or a recording")
+        ->excludes("--motion");
+}
+
+void add_added_forces(CLI::App* app, DeviceWork& d) {
+    app->add_option("--proximity", d.added.proximity,
+                    "force on the hand over the last millimetre before the hair touches, in newtons (default: 0)")
+        ->check(number_in(0, 0.3));
+    app->add_option(
+           "--paste", d.added.paste,
+           "yield stress in pascals of paste that drags at the hair; heavy oil colour 100 to 1000 (default: 0)")
+        ->check(number_in(0, 5000));
 }
 
 void add_delay(CLI::App* app, DeviceWork& d) {
     app->add_option("--delay", d.simulation.delay_ms, "delay of a force on its way, in milliseconds (default: 0)")
         ->check(number_in(0, 20));
+    app->add_option("--jitter", d.simulation.jitter_ms,
+                    "what a force may take longer than the delay, in milliseconds (default: 0.5 with a delay, else 0)")
+        ->check(number_in(0, 1));
 }
 
 }  // namespace
@@ -69,10 +86,12 @@ CLI::App* add_device(CLI::App& app, DeviceWork& d) {
         ->check(number_in(0, 100));
     test->add_flag("--all-brushes", d.trial.all_brushes, "all shipped brushes, not only the one of --brush");
     add_delay(test, d);
+    add_added_forces(test, d);
     auto* record = device->add_subcommand("record", "record what an arm does and the forces that it is given (.csv)");
     add_arm(record, d);
     add_hand(record, d);
     add_motion(record, d);
+    add_added_forces(record, d);
     record->add_option("-o,--output", d.output, "table to write (.csv)")->required();
     record->add_option("--replay", d.replay, "play this recording in place of an arm, and compare the forces (.csv)");
     for (CLI::App* command : {list, simulate, test, record})

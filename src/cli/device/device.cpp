@@ -15,6 +15,7 @@
 #include "core/files/files.h"
 #include "core/system/interrupt.h"
 #include "haptic/device/haply.h"
+#include "haptic/followed_path.h"
 #include "haptic/loop.h"
 #include "io/model/read_model.h"
 #include "mesh/repair/repair.h"
@@ -76,8 +77,8 @@ int simulate_device(const DeviceWork& a) {
     const ContactModel model = load_contact_model(a.model);
     const haptic::TrialPlace place = haptic::place_above(*model.surface, "");
     haptic::SimulatedArm arm(haptic::device_preset(a.arm.preset),
-                             haptic::hand_path(motion_named(a.simulation.motion), place, brush::load_preset(a.brush)),
-                             {.delay = 1e-3 * a.simulation.delay_ms});
+                             hand_of(a, motion_named(a.simulation.motion), place, brush::load_preset(a.brush)),
+                             {.delay = 1e-3 * a.simulation.delay_ms, .jitter = jitter_of(a)});
     haptic::serve_simulated(
         std::move(arm),
         {.port = a.arm.port, .fault = fault_named(a.simulation.fault), .fault_after = a.simulation.fault_after},
@@ -93,9 +94,9 @@ std::vector<haptic::RecordedPeriod> live_recording(const DeviceWork& a, const Co
                                                    const haptic::TrialPlace& place, const haptic::LawOptions& law) {
     const brush::Preset preset = brush::load_preset(a.brush);
     haptic::DeviceState state;
-    const auto path = haptic::hand_path(motion_named(a.simulation.motion), place, preset);
+    const haptic::HandPath path = hand_of(a, motion_named(a.simulation.motion), place, preset);
     const std::unique_ptr<haptic::Device> device = open_device(a, path, state);
-    haptic::Loop loop(*device, haptic::HairSolver(brush::make_tuft(preset), *model.surface),
+    haptic::Loop loop(*device, haptic::HairSolver(brush::make_tuft(preset), *model.surface, solver_options(a, preset)),
                       {.law = law, .record = true});
     haptic::ServoControl control;
     const Vec3 above = place.frame.origin + (preset.length + 0.01) * place.frame.n;
@@ -169,6 +170,23 @@ ContactModel load_contact_model(const std::filesystem::path& file) {
     return model;
 }
 
+haptic::HandPath hand_of(const DeviceWork& a, haptic::HandMotion motion, const haptic::TrialPlace& place,
+                         const brush::Preset& preset) {
+    if (!a.simulation.follow.empty()) return haptic::followed_path(haptic::read_followed_path(a.simulation.follow));
+    return haptic::hand_path(motion, place, preset);
+}
+
+double jitter_of(const DeviceWork& a) {
+    return 1e-3 * a.simulation.jitter_ms.value_or(a.simulation.delay_ms > 0 ? 0.5 : 0);
+}
+
+haptic::SolverOptions solver_options(const DeviceWork& a, const brush::Preset& preset) {
+    haptic::SolverOptions options;
+    const double gain = preset.force_gain > 0 ? preset.force_gain : 1;
+    options.added = {.proximity = a.added.proximity / gain, .yield_stress = a.added.paste};
+    return options;
+}
+
 haptic::HandMotion motion_named(const std::string& name) {
     for (int i = 0; i <= static_cast<int>(haptic::HandMotion::slide); ++i)
         if (haptic::name_of(static_cast<haptic::HandMotion>(i)) == name) return static_cast<haptic::HandMotion>(i);
@@ -179,7 +197,8 @@ std::unique_ptr<haptic::Device> open_device(const DeviceWork& a, const haptic::H
                                             haptic::DeviceState& state) {
     if (!a.arm.simulate.empty())
         return std::make_unique<haptic::SimulatedDevice>(
-            haptic::SimulatedArm(haptic::device_preset(a.arm.simulate), path, {.delay = 1e-3 * a.simulation.delay_ms}));
+            haptic::SimulatedArm(haptic::device_preset(a.arm.simulate), path,
+                                 {.delay = 1e-3 * a.simulation.delay_ms, .jitter = jitter_of(a)}));
     auto device = std::make_unique<haptic::HaplyDevice>(haptic::device_preset(a.arm.preset),
                                                         haptic::HaplyAddress{a.arm.host, a.arm.port});
     for (auto waited = 0ms; waited < kStopPatience; waited += kLook) {

@@ -19,8 +19,15 @@ struct ContactModel {
 /// Reads a model; `file` may be the name of a shipped one, such as "bowl".
 ContactModel load_contact_model(const std::filesystem::path& file);
 
+/// Where the simulated hand of the arguments goes: along `--follow`, or `motion` at a place.
+haptic::HandPath hand_of(const DeviceWork& arguments, haptic::HandMotion motion, const haptic::TrialPlace& place,
+                         const brush::Preset& preset);
 /// Throws `UsageError` for an unknown name.
 haptic::HandMotion motion_named(const std::string& name);
+
+/// s, of a force on its way besides the delay.
+double jitter_of(const DeviceWork& arguments);
+haptic::SolverOptions solver_options(const DeviceWork& arguments, const brush::Preset& preset);
 
 /// Opens the arm of the arguments, simulated with `path` or real. `state` becomes its first state. Throws `Error` where
 /// no service answers within 3 s.

@@ -38,7 +38,8 @@ haptic::LoopStatus run_loop(const DeviceWork& a, const Places& places) {
     haptic::DeviceState state;
     const std::unique_ptr<haptic::Device> device = open_device(a, path, state);
     const haptic::LawOptions law{.limits = device->limits(), .gain = preset.force_gain, .restore = a.restore};
-    haptic::Loop loop(*device, haptic::HairSolver(brush::make_tuft(preset), *places.surface[0]),
+    haptic::Loop loop(*device,
+                      haptic::HairSolver(brush::make_tuft(preset), *places.surface[0], solver_options(a, preset)),
                       {.law = law, .count_allocations = allocations_of_this_thread});
     haptic::ServoControl control;
     if (a.arm.simulate.empty()) {

@@ -182,7 +182,8 @@ TrialOptions trial_options(const DeviceWork& a, const brush::Preset& preset) {
                    .delay = 1e-3 * a.simulation.delay_ms,
                    .restore = a.restore};
     options.delay = 1e-3 * a.simulation.delay_ms;
-    options.jitter = a.simulation.delay_ms > 0 ? 5e-4 : 0;
+    options.jitter = jitter_of(a);
+    options.solver = solver_options(a, preset);
     return options;
 }
 
