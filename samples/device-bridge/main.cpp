@@ -13,15 +13,15 @@
 // Metres and newtons; x to the right, y away from you, z up. The orientation turns the holder: the brush points along
 // its -z. What is yours to write is the class Arm. As it stands, it is an arm of 0.2 kg that swings in the air.
 #include <algorithm>
+#include <array>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <thread>
+#include <utility>
 
 namespace asio = boost::asio;
 namespace beast = boost::beast;
@@ -30,46 +30,39 @@ using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-struct Vector {
-    double x = 0, y = 0, z = 0;
-};
+using Vector = std::array<double, 3>;  // x, y, z
 
 // Replace the bodies of these four functions by calls of your arm's library.
 class Arm {
   public:
     // Reads position (m) and velocity (m/s), the grip's orientation and buttons.
     void read() {
-        const Clock::time_point now = Clock::now();
-        const double dt = std::min(0.01, std::chrono::duration<double>(now - last_).count());
-        last_ = now;
+        const Clock::time_point before = std::exchange(last_, Clock::now());
+        const double dt = std::min(0.01, std::chrono::duration<double>(last_ - before).count());
         const double mass = 0.2, damping = 2, spring = 50;  // kg, N s/m, N/m to where it hangs
-        const auto move = [&](double& x, double& v, double f) {
-            v += dt / mass * (f - damping * v - spring * x);
-            x += dt * v;
-        };
-        move(position.x, velocity.x, force_.x);
-        move(position.y, velocity.y, force_.y);
-        move(position.z, velocity.z, force_.z);
+        for (int n = 0; n < 3; ++n) {
+            velocity[n] += dt / mass * (force_[n] - damping * velocity[n] - spring * position[n]);
+            position[n] += dt * velocity[n];
+        }
     }
     // Gives the motors a force (N) on the hand, until the next one.
     void give(const Vector& force) { force_ = force; }
     // Greatest force (N) of the motors along one axis.
     static double strongest() { return 3.3; }
-    // Ends all force. Called whenever tuft is gone, has been silent for 20 ms, or says something that is not
-    // understood.
+    // Ends all force: tuft is gone, has been silent for 20 ms, or says what is not understood.
     void release() { give({}); }
 
-    Vector position{0.02, 0, 0}, velocity;
+    Vector position{0.02, 0, 0}, velocity{};
     double w = 1, i = 0, j = 0, k = 0;  // orientation
     bool a = false, b = false, c = false;
 
   private:
-    Vector force_;
+    Vector force_{};
     Clock::time_point last_ = Clock::now();
 };
 
 Json json_of(const Vector& v) {
-    return {{"x", v.x}, {"y", v.y}, {"z", v.z}};
+    return {{"x", v[0]}, {"y", v[1]}, {"z", v[2]}};
 }
 
 std::string state_text(const Arm& arm) {
@@ -81,19 +74,16 @@ std::string state_text(const Arm& arm) {
         .dump();
 }
 
-// Reads a force and keeps it within what the motors bear. Returns false for anything else.
+// Reads a force and keeps it within what the motors bear. Returns false for anything else; JSON has finite numbers
+// only.
 bool read_force(const std::string& text, Vector& force) {
     const Json message = Json::parse(text, nullptr, false);
-    if (message.is_discarded()) return false;
+    if (!message.is_object()) return false;
     const Json values = message.value("/inverse3/0/commands/set_cursor_force/values"_json_pointer, Json());
-    if (!values.is_object()) return false;
-    double* const parts[] = {&force.x, &force.y, &force.z};
     const char* const names[] = {"x", "y", "z"};
     for (int n = 0; n < 3; ++n) {
         if (!values.contains(names[n]) || !values[names[n]].is_number()) return false;
-        const double f = values[names[n]];
-        if (!std::isfinite(f)) return false;
-        *parts[n] = std::clamp(f, -Arm::strongest(), Arm::strongest());
+        force[n] = std::clamp(values[names[n]].get<double>(), -Arm::strongest(), Arm::strongest());
     }
     return true;
 }
@@ -105,12 +95,11 @@ void serve(asio::ip::tcp::socket socket, Arm& arm) {
     client.read_message_max(65536);
     client.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
     asio::io_context& io = static_cast<asio::io_context&>(client.get_executor().context());
-    bool gone = false, reading = false, writing = false;
+    bool gone = false, reading = false, writing = false, may_send = true;
     beast::flat_buffer buffer;
     std::string text;
     client.async_accept([&](beast::error_code error) { gone = static_cast<bool>(error); });
     Clock::time_point heard = Clock::now(), due = heard;
-    bool may_send = true;
     while (!gone) {
         due += 1ms;
         io.restart();
@@ -122,12 +111,10 @@ void serve(asio::ip::tcp::socket socket, Arm& arm) {
             reading = true;
             client.async_read(buffer, [&](beast::error_code error, std::size_t) {
                 reading = false;
-                Vector force;
                 if (error) return static_cast<void>(gone = true);
-                if (read_force(beast::buffers_to_string(buffer.data()), force))
-                    arm.give(force);
-                else
-                    arm.release();
+                Vector force;
+                const bool understood = read_force(beast::buffers_to_string(buffer.data()), force);
+                understood ? arm.give(force) : arm.release();
                 buffer.consume(buffer.size());
                 heard = Clock::now();
                 may_send = true;
@@ -149,17 +136,15 @@ void serve(asio::ip::tcp::socket socket, Arm& arm) {
     io.poll();
 }
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     const int port = argc > 1 ? std::atoi(argv[1]) : 10001;
-    try {
-        asio::io_context io;
-        const asio::ip::tcp::endpoint here(asio::ip::address_v4::loopback(), static_cast<unsigned short>(port));
-        asio::ip::tcp::acceptor acceptor(io, here);
-        std::printf("port %d\n", acceptor.local_endpoint().port());
-        std::fflush(stdout);
-        Arm arm;
-        for (;;) serve(acceptor.accept(), arm);
-    } catch (const std::exception& error) {
-        return std::fprintf(stderr, "tuft-device-bridge: %s\n", error.what()), 1;
-    }
+    asio::io_context io;
+    const asio::ip::tcp::endpoint here(asio::ip::address_v4::loopback(), static_cast<unsigned short>(port));
+    asio::ip::tcp::acceptor acceptor(io, here);
+    std::printf("port %d\n", acceptor.local_endpoint().port());
+    std::fflush(stdout);
+    Arm arm;
+    for (;;) serve(acceptor.accept(), arm);
+} catch (const std::exception& error) {
+    return std::fprintf(stderr, "tuft-device-bridge: %s\n", error.what()), 1;
 }
