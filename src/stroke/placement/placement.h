@@ -91,9 +91,9 @@ struct HolderOptions {
     /// along the path and to its left, and a turn of the ferrule's x from the path, anticlockwise (radians);
     /// `TiltedTipLag::at`. Empty: no change.
     std::function<Vec2(double depth, const Vec2& lean, double turn)> tip_lag_change = {};
-    /// Where the ink of a dot, a trace that does not leave its first place, has its middle on a plane, metres to the
-    /// right and down of its mean place, led without this: `middle_of_dot`. The hand stands that much back. Empty: it
-    /// does not.
+    /// Where the ink of a dot, a trace that stays within half of `tip_lag_turn` of its first place, has its middle on a
+    /// plane, metres to the right and down of its mean place, led without this: `middle_of_dot`. The hand stands that
+    /// much back. Empty: it does not.
     std::function<Vec2(const StrokeSamples& dot)> dot_place = {};
     /// Metres of travel in which the tip lag follows a turn; less of a blade, which slips across its edge meanwhile.
     double tip_lag_turn = 0.0015;
