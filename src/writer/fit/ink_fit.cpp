@@ -26,6 +26,7 @@ constexpr double kNeedleBack = 0.6;      // part of that taken back at once
 constexpr float kDeepest = 24;           // units of depth that count
 constexpr double kPrice = 0.002;         // of the score, for a knuckle of the least curvature
 constexpr double kGood = 0.98, kSettled = 0.002;  // a path that scores so much, and gains less in a try, stays
+constexpr double kBehind = 0.06;                  // over the tries so far: less than the best by more is given up
 
 struct Errors {
     std::vector<double> left, right, kick;  ///< units, [stations]
@@ -254,11 +255,9 @@ FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& ta
         return judged(trace, coarse.draw(trace), next, sides);
     };
     FitResult best{.stations = stations};
-    std::vector<double> best_at;  // scores of the begin of `best`, after each try
     const auto fit_from = [&](const std::vector<Station>& first, const Try& first_try, const Manner& manner) {
         const std::vector<double> soft = softness_of(first);
         FitResult own{.stations = first};
-        std::vector<double> own_at;
         std::vector<Station> next = first;
         for (int t = 1, idle = 0; t <= options.tries && idle < options.idle; ++t) {
             const Try now = t == 1 ? first_try : try_out(next, manner.first_sides ? first : next);
@@ -267,13 +266,12 @@ FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& ta
             if (gain > 0) own.score = now.reached.score, own.iou = now.reached.iou, own.stations = next;
             own.tries += t > 1;
             if (t > 2 && own.score > kGood && gain < kSettled) break;
-            own_at.push_back(own.score);
-            if (t > 1 && !best_at.empty() && own.score < best_at[std::min(own_at.size(), best_at.size()) - 1]) break;
+            if (t > 1 && own.score < best.score - kBehind / t) break;
             correct(next, first, soft, now.errors, manner);
         }
         own.tries += best.tries;
         if (own.score > best.score)
-            best = std::move(own), best_at = std::move(own_at);
+            best = std::move(own);
         else
             best.tries = own.tries;
     };

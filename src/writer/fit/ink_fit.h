@@ -23,11 +23,12 @@ struct FitTarget {
 /// Options of `fit_stations`.
 struct FitOptions {
     int tries = kFitTries;  ///< drawings on the plane at most
-    double step = 8;        ///< units between poses
+    double step = 9.5;      ///< units between poses
     double weak = 0.955;    ///< overlap below which another manner and another begin are tried
     int idle = 4;           ///< tries without a gain after which it stops
-    double fine_step = 2;  ///< units, in the last drawings: ink depends on the step, by .005 of the overlap from 5 to 1
-    int last_tries = 3;    ///< drawings after those; each but the first is corrected
+    /// Units, in the last drawings: ink depends on the step, by .005 of the overlap from 5 to 1.
+    double fine_step = 2.5;
+    int last_tries = 3;  ///< drawings after those; each but the first is corrected
 };
 
 /// Result of `fit_stations`.
@@ -51,10 +52,10 @@ struct FitResult {
 /// weight w lies d ≤ 24 units on the wrong side of the edge. A lump counts more than a rim of the same area. Where the
 /// best try overlaps by less than `options.weak`, it begins again in another manner (left and right are those of the
 /// first path, and the first three stations move as one), and from `other`, if that is not empty, in both. A begin in a
-/// manner ends early where its score is above 0.98 and a try gains less than 0.002, and where it is behind the best of
-/// the others at the same try. At last the path is corrected in steps nearly as fine as those of painting, smoothed
-/// over at most 1.2 stations; of these drawings the one is kept that has the largest score less 0.002 Σ |curvature| /
-/// kKnuckle over its knuckles (`sharpness_of`).
+/// manner ends early where its score is above 0.98 and a try gains less than 0.002, and where after t tries it is
+/// behind the best of the others by more than 0.06 / t. At last the path is corrected in steps nearly as fine as those
+/// of painting, smoothed over at most 1.2 stations; of these drawings the one is kept that has the largest score less
+/// 0.002 Σ |curvature| / kKnuckle over its knuckles (`sharpness_of`).
 FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& target, const BrushHand& hand,
                        const Pace& pace, const FitOptions& options = {}, const std::vector<Station>& other = {});
 
