@@ -156,14 +156,34 @@ Region without_small_holes(const Region& region, double radius) {
     return out;
 }
 
-/// The distance g of the closing: at least that at which it bridges two points `join` apart, √(g² − ¼ join²) =
-/// g − bleed, and that at which inner corners get their radius, g − bleed.
+/// The least distance at which the closing bridges two points `join` apart: √(g² − ¼ join²) = g − bleed.
 double closing_distance(const OutlineOptions& options) {
-    const double half = 0.5 * options.join, bleed = options.bleed;
-    const double rounding = bleed + std::clamp(kInnerCorner * bleed, kLeastCorner, kMostCorner);
-    if (half <= bleed) return rounding;
-    const double bridging = (half * half + bleed * bleed) / (2 * std::max(bleed, 1e-9));
-    return std::max(rounding, std::min(bridging, kWidestClosing * options.join));
+    const double half = 0.5 * options.join;
+    if (half <= options.bleed) return options.bleed;
+    const double bridging = (half * half + options.bleed * options.bleed) / (2 * std::max(options.bleed, 1e-9));
+    return std::min(bridging, kWidestClosing * options.join);
+}
+
+/// Rounds the inner corners of each piece by the closing of it alone: pieces apart stay apart. `have`: radius that they
+/// have already.
+Region round_inner_corners(const Region& film, double bleed, double have) {
+    const double radius = std::clamp(kInnerCorner * bleed, kLeastCorner, kMostCorner);
+    if (!(bleed > 0) || have >= radius) return film;
+    const std::vector<Region> parts = separate(film);
+    std::vector<Box2> boxes;
+    for (const Region& part : parts) boxes.push_back(box_of(part));
+    const auto overlap = [](const Box2& a, const Box2& b) {
+        return a.lo.x < b.hi.x && b.lo.x < a.hi.x && a.lo.y < b.hi.y && b.lo.y < a.hi.y;
+    };
+    Region out;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        Region closed = offset(offset(parts[i], radius), -radius);
+        for (std::size_t k = 0; k < parts.size(); ++k)
+            if (k != i && overlap(boxes[i], boxes[k])) closed = subtract(closed, parts[k]);
+        closed = unite(closed, parts[i]);
+        out.insert(out.end(), closed.begin(), closed.end());
+    }
+    return out;
 }
 
 }  // namespace
@@ -175,9 +195,11 @@ std::vector<Outline> find_outlines(const FilmMesh& film, const Panel& panel, con
     const PaintField paint = find_paint(surface, coverage, grid, options.texel);
     if (!paint.any) return {};
     const Region allowed = allowed_region(film, panel, options, options.bleed + options.least_side);
-    const Region wanted = simplify(without_small_holes(film_round(grid, paint.painted, options.bleed, around),
-                                                       kLeastHole * std::max(options.bleed, 0.5 * options.join)),
-                                   kStraight);
+    const Region round =
+        round_inner_corners(simplify(film_round(grid, paint.painted, options.bleed, around), 0.5 * kStraight),
+                            options.bleed, around - options.bleed);
+    const Region wanted =
+        simplify(without_small_holes(round, kLeastHole * std::max(options.bleed, 0.5 * options.join)), kStraight);
     std::vector<Outline> outlines;
     for (Region& part : separate(intersect(wanted, allowed))) {
         const Vec2 size = box_of(part).size();

@@ -29,9 +29,9 @@ struct Outline {
 /// Returns the pieces of film of a panel. The film is the closing of the paint: all that is within g of it and more
 /// than g − bleed from what is not. So the cut line runs `bleed` outside the paint and bridges gaps; with g = (¼ join²
 /// + bleed²) / 2 bleed two points `join` apart share a piece, and broad islands a little further apart do too. Inner
-/// corners have a radius of g − bleed, which is half the bleed or more, 1 to 5 mm: film tears from sharper ones. Holes
-/// smaller than a disc of radius 3 max(bleed, join / 2) are film. The film ends at seams, or `overlap` beyond them.
-/// Beyond other borders of the panel it goes on in the plane. The paint ends where its coverage is a half, found
+/// corners of a piece have a radius of half the bleed at least, or of 1 mm, at most 5: film tears from sharper ones.
+/// Holes smaller than a disc of radius 3 max(bleed, join / 2) are film. The film ends at seams, or `overlap` beyond
+/// them. Beyond other borders of the panel it goes on in the plane. The paint ends where its coverage is a half, found
 /// between the nodes of a grid (paint_field.h) of cells of a texel, at least 0.1 mm, and at most 4 million of them;
 /// distances from there are those of level_set.h. So the line is within a tenth of a cell and 10 µm. Pieces with less
 /// than 0.05 mm² of paint are left out.

@@ -215,6 +215,7 @@ TEST(Outline, NearIslandsShareAPieceAndFarOnesDoNot) {
     EXPECT_EQ(Sheet100().outlines(two(19 * kMm), {.bleed = 1 * kMm}).size(), 1u);  // 9 mm between them
     EXPECT_EQ(Sheet100().outlines(two(24 * kMm), {.bleed = 3 * kMm}).size(), 2u);  // 14 mm
     EXPECT_EQ(Sheet100().outlines(two(40 * kMm), {.bleed = 1 * kMm}).size(), 2u);  // 30 mm
+    EXPECT_EQ(Sheet100().outlines(two(27 * kMm), {.bleed = 8 * kMm}).size(), 2u);  // 1 mm between their films
 }
 
 // Film tears from a sharp inner corner. Two arcs that meet leave none: a disc of a little less than half the bleed that
