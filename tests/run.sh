@@ -19,7 +19,7 @@ cmake_options=(-DTUFT_TESTS=ON)
 build all || { wait; exit 1; }
 wait "$installing"
 say "testing"
-tests_at_once=$(( $(nproc) + 2 ))  # most of them wait half their time: for a window, a server or a program
+tests_at_once=$(( $(nproc) + 1 ))  # some of them wait for a window, a server or a program
 if [ $# -gt 0 ]; then
   ctest --preset release --parallel "$tests_at_once" "$@"
 else  # the quick ones first, and the others whatever they say

@@ -185,17 +185,15 @@ LeftOut leave_out_fragments(const CutFilm& cut, const CoverageFn& coverage, cons
     const double least = options.least_fragment;
     const std::vector<std::uint32_t> twin = atlas::twin_half_edges(cut.film.mesh);
     const auto is_speck = [&](const Piece& piece) { return piece.paint_area < kSpeck * least; };
-    const auto is_sliver = [&](const Piece& piece) {
-        return piece.paint_area < options.least_piece && piece.paint_area < kSliver * decal::area_of(piece.film);
-    };
+    const auto is_small_sliver = [&](const Piece& piece) { return is_sliver(piece, options.least_piece); };
     const double few = kSpecksOfAll * paint_where(pieces, [](const Piece&) { return true; });
-    const bool no_specks = paint_where(pieces, is_speck) < few, no_slivers = paint_where(pieces, is_sliver) < few;
+    const bool no_specks = paint_where(pieces, is_speck) < few, no_slivers = paint_where(pieces, is_small_sliver) < few;
     std::vector<Piece> kept;
     LeftOut left_out;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         report(options.progress, "fragments", static_cast<double>(i) / static_cast<double>(pieces.size()));
         const Piece& piece = pieces[i];
-        if ((no_specks && is_speck(piece)) || (no_slivers && is_sliver(piece)) ||
+        if ((no_specks && is_speck(piece)) || (no_slivers && is_small_sliver(piece)) ||
             (piece.paint_area < least && continues_larger_piece(cut, twin, piece, pieces, coverage))) {
             ++left_out.fragments;
             left_out.paint_area += piece.paint_area;
@@ -334,6 +332,10 @@ void draw_pieces(const CutFilm& cut, const PrintSource& source, const SheetOptio
 }
 
 }  // namespace
+
+bool is_sliver(const Piece& piece, double least) {
+    return piece.paint_area < least && piece.paint_area < kSliver * area_of(piece.film);
+}
 
 Sheet make_sheet(const mesh::TriangleMesh& model, const PrintSource& source, const SheetOptions& options) {
     const CutFilm cut = cut_film(model, source, options);

@@ -78,7 +78,7 @@ struct SheetOptions {
     double overlap = 0.001;        ///< of two panels, metres; the one with the lower number lies below
     double join = 0.01;            ///< see `OutlineOptions`
     double least_fragment = 1e-5;  ///< m² of paint; see `make_sheet`
-    double least_piece = 5e-5;     ///< the same, of slivers
+    double least_piece = 0;        ///< the same, of slivers; 0: all are laid
     Vec2 page{0.21, 0.297};        ///< metres; height 0: a roll
     bool upright = false;          ///< all pieces with their arrow up the page, along the grain; else turned to fit
     double pixel = 0.0254 / 300;   ///< metres
@@ -91,14 +91,17 @@ struct SheetOptions {
 /// Largest part of the bleed that is printed beyond cut lines through paint, metres.
 inline constexpr double kPrintedBleed = 0.003;
 
+/// Whether a piece has less than `least` m² of paint on more than ten times as much film: a sliver, such as a drawing
+/// leaves on the wall of a gap, or a fine line or a small dot that stands alone.
+bool is_sliver(const Piece& piece, double least);
+
 /// Returns the sheet of a model: panels by `cut_into_panels`, cut lines by `find_outlines`, nested by `nest`. The arrow
 /// of a piece points up the model (+z), or on level surfaces to its back (+y). Pieces are numbered panel by panel.
 ///
 /// A cut leaves fragments where it crosses a motif twice. One whose paint goes on over a seam, in a piece with at least
 /// 100 times as much, and that has less than `least_fragment`, is too small to be laid and not missed: it is left out.
 /// So are specks anywhere of less than a tenth of `least_fragment`, if all of them together have less than a thousandth
-/// of all paint; and likewise slivers, with less than `least_piece` on more than ten times as much film, such as a
-/// drawing leaves on the wall of a gap. `Sheet::left_out` says how much.
+/// of all paint; and likewise slivers of less than `least_piece`. `Sheet::left_out` says how much.
 ///
 /// Pages of film come first, then their strain maps. Throws `Error` where nothing is painted or a piece fits no page.
 /// The same bits for any number of threads.

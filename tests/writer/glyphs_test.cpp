@@ -112,7 +112,7 @@ TEST(OutlineFont, IsFoundByTheNameOfItsFamily) {
     EXPECT_EQ(named->advance, of_file->advance);
     ASSERT_FALSE(named->area.empty());
     EXPECT_EQ(named->area, of_file->area);
-    for (const char* name : {"No Such Family Of Letters", "no/such/file", "missing.ttf"})
+    for (const char* name : {"No Such Family Of Letters", "no/such/file", "missing.ttf", "sans-serif"})
         EXPECT_THROW(open_glyphs(name), Error) << name;
 }
 

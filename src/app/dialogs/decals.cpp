@@ -102,7 +102,7 @@ ExportSheets sheets_command(const DecalSettings& c, const stroke::MaskTable& mas
     request.sheet.bleed = c.bleed;
     request.sheet.overlap = c.overlap;
     request.sheet.join = c.join;
-    if (c.fragments) request.sheet.least_fragment = request.sheet.least_piece = 0;
+    if (c.fragments) request.sheet.least_fragment = 0;
     request.sheet.page = {page.width, page.height};
     request.sheet.upright = c.along_grain;
     request.sheet.pixel = kInch / c.dpi;

@@ -411,7 +411,7 @@ struct Decals {
     double overlap_mm = 1;           ///< of two panels
     double join_mm = 10;             ///< islands of paint nearer than this share a piece
     double least_fragment_mm2 = 10;  ///< of paint; see decal::make_sheet
-    double least_piece_mm2 = 50;     ///< likewise
+    double least_piece_mm2 = 0;      ///< likewise
     PrintChoice print;
     Common common;
 };

@@ -100,7 +100,7 @@ CLI::App* add_decals(CLI::App& app, Decals& d) {
         ->check(number_in(0, 1e6));
     s->add_option("--least-piece", d.least_piece_mm2,
                   "leave out slivers that have less paint than this, on more than ten times as much film, where all "
-                  "together have less than a thousandth of the paint, in mm2 (default: 50; 0: lay them)")
+                  "together have less than a thousandth of the paint, in mm2 (default: 0: lay them)")
         ->check(number_in(0, 1e6));
     s->add_option_function<std::string>(
          "--page", [&d](const std::string& text) { read_page(d, text); },

@@ -71,6 +71,18 @@ void check_request(const Decals& a) {
     if (!a.guide.empty()) check_folder(a.guide);
 }
 
+/// Names the option that leaves slivers out, where there are some.
+void print_slivers(const decal::Sheet& sheet) {
+    constexpr double kSmall = 5e-5;  // m² of paint
+    std::size_t n = 0;
+    double paint = 0;
+    for (const decal::Piece& piece : sheet.pieces)
+        if (decal::is_sliver(piece, kSmall)) ++n, paint += piece.paint_area;
+    if (n > 0)
+        fmt::print("{} with {:.1f} mm2 of paint in all on far more film (--least-piece 50 leaves out such)\n",
+                   counted(n, "small piece"), paint * 1e6);
+}
+
 void print_result(const Decals& a, const decal::Sheet& sheet, const std::vector<std::string>& wrote) {
     const std::size_t pages = static_cast<std::size_t>(std::count_if(
         sheet.pages.begin(), sheet.pages.end(), [](const decal::Page& page) { return !page.strain_map; }));
@@ -97,8 +109,9 @@ void print_result(const Decals& a, const decal::Sheet& sheet, const std::vector<
     fmt::print("{} on {}, {:.1f} cm2 of film, strained by {:.2f} % at most\n", counted(sheet.pieces.size(), "piece"),
                counted(pages, "page"), film * 1e4, 100 * strain);
     if (sheet.left_out.fragments > 0)
-        fmt::print("left out: {} with {:.1f} mm2 of paint (--least-fragment 0 --least-piece 0 lay them)\n",
+        fmt::print("left out: {} with {:.1f} mm2 of paint (--least-fragment 0 lays them)\n",
                    counted(sheet.left_out.fragments, "fragment"), sheet.left_out.paint_area * 1e6);
+    print_slivers(sheet);
     for (const decal::Plate& plate : sheet.plates)
         fmt::print("plate {}: 100 % is {:.2f} film units\n", plate.name, plate.full);
     for (const std::string& path : wrote) fmt::print("wrote {}\n", path);

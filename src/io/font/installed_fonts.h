@@ -6,7 +6,8 @@
 #include <vector>
 
 /// \file
-/// Fonts installed on this machine, through fontconfig. Called by `io/strokes` for the text of drawings.
+/// Fonts installed on this machine, through fontconfig. Called for the text of drawings,
+/// and by `writer` for a font that is named.
 namespace tuft::io {
 
 /// What a drawing asks for (CSS Fonts, W3C 2018).

@@ -8,13 +8,15 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr std::size_t kPartPoses = 32;    // a hundredth of a second of bending
-constexpr std::size_t kHandPoses = 4;     // of a hand that paints: its ink waits for the first part
-constexpr std::size_t kPartsAhead = 3;    // bound the poses in memory
+constexpr std::size_t kPartPoses = 32;  // a hundredth of a second of bending
+constexpr std::size_t kHandPoses = 4;   // of a hand that paints: its ink waits for the first part
+constexpr std::size_t kPartsAhead = 3;  // bound the poses in memory
+// Of parts whose poses hold the cells of their footprints, too: 0.25 MB of a stamp 256 texels wide.
+constexpr std::size_t kClosedPoses = 8, kClosedAhead = 1;
 constexpr std::size_t kClosedAtOnce = 8;  // poses whose footprints are computed in parallel, as a batch of stamps is
 // Up to so many threads the one that bends ahead also computes the footprints: else it waits, and those who deposit ink
 // have them to do.
-constexpr int kThreadsForOneCloser = 4;
+constexpr int kThreadsForOneCloser = 2;
 
 bool same(const brush::Pose& a, const brush::Pose& b) {
     return a.position == b.position && a.rotation == b.rotation && a.time == b.time;
@@ -79,7 +81,8 @@ void StrokeForecast::compute(bool closes) {
 
 void StrokeForecast::compute_ahead() {
     const bool closes = thread_count() <= kThreadsForOneCloser;
-    ahead_ = std::make_unique<WorkAhead>(parts_.size(), kPartsAhead,
+    if (closes) cut_path(kClosedPoses);
+    ahead_ = std::make_unique<WorkAhead>(parts_.size(), closes ? kClosedAhead : kPartsAhead,
                                          [this, closes](std::size_t k) { compute_part(k, closes); });
     ahead_->begin();
 }

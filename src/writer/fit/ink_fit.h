@@ -55,7 +55,7 @@ struct FitResult {
 /// manner ends early where its score is above 0.98 and a try gains less than 0.002, and where after t tries it is
 /// behind the best of the others by more than 0.06 / t. At last the path is corrected in steps nearly as fine as those
 /// of painting, smoothed over at most 1.2 stations; of these drawings the one is kept that has the largest score less
-/// 0.002 Σ |curvature| / kKnuckle over its knuckles (`sharpness_of`).
+/// 0.002 times `sharpness_of`, a sum over its knuckles.
 FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& target, const BrushHand& hand,
                        const Pace& pace, const FitOptions& options = {}, const std::vector<Station>& other = {});
 

@@ -5,7 +5,8 @@
 namespace tuft::writer {
 namespace {
 
-constexpr double kRim = 4;  // units of depth at which a wrong cell counts once
+constexpr double kRim = 4;       // units of depth at which a wrong cell counts once
+constexpr double kSharpest = 4;  // of kKnuckle: a pinhole's edge is sharper, and no worse to look at
 
 bool is_under_another(const FitTarget& target, const Vec2& p) {
     const Cells& c = target.wanted;
@@ -47,7 +48,7 @@ std::vector<EdgeTurn> turns_wanted(const Cells& wanted) {
 double sharpness_of(const FitTarget& target, std::span<const EdgeTurn> turns, std::span<const float> coverage) {
     double sum = 0;
     for (const EdgeTurn& turn : knuckles_of(target.wanted, coverage, turns))
-        if (!is_under_another(target, turn.at)) sum += std::abs(turn.curvature) / kKnuckle;
+        if (!is_under_another(target, turn.at)) sum += std::min(std::abs(turn.curvature) / kKnuckle, kSharpest);
     return sum;
 }
 

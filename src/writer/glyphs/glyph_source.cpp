@@ -150,11 +150,13 @@ std::unique_ptr<GlyphSource> open_folder(const fs::path& path) {
     return std::make_unique<Sources>(std::move(all));
 }
 
-/// The font of a family's name. None for what looks like a path.
+/// The font of a family's name. None for what looks like a path, and for generic names as "serif", which any font
+/// answers.
 io::InstalledFont installed_font(const std::string& name) {
     constexpr std::size_t kLongestName = 128;
     if (name.size() > kLongestName || name.find('/') != std::string::npos || fs::path(name).has_extension()) return {};
-    return io::find_font({.families = {name}});
+    io::InstalledFont font = io::find_font({.families = {name}});
+    return font.requested && font.family == name ? font : io::InstalledFont{};
 }
 
 constexpr double kThinSpace = 0.2, kSpace = 0.35;  // parts of the side
