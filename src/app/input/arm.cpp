@@ -160,6 +160,7 @@ void Arm::apply(const ArmSettings& settings) {
     settings_.gain = settings.gain;
     settings_.most_force = settings.most_force;
     settings_.restore = settings.restore;
+    settings_.proximity = settings.proximity;
     settings_.scale = workspace_.scale = settings.scale;
     settings_.centre = settings.centre;
     if (loop_) loop_->set_law(law());
@@ -203,8 +204,13 @@ void Arm::release() {
     if (loop_) loop_->release();
 }
 
-void Arm::set_ink(double wetness, double ink_left) {
-    if (loop_) loop_->set_ink(wetness, ink_left);
+// A brush that runs dry has less paste under it.
+void Arm::set_ink(double wetness, double ink_left, double yield_stress) {
+    if (!loop_) return;
+    loop_->set_ink(wetness, ink_left);
+    const double gain = law().gain;
+    loop_->set_added({.proximity = gain > 0 ? settings_.proximity / gain : 0,
+                      .yield_stress = yield_stress * std::clamp(ink_left, 0.0, 1.0)});
 }
 
 // The space may be shifted by the clutch: the place is found from where the arm is in both frames.

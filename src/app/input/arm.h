@@ -30,6 +30,7 @@ struct ArmSettings {
     std::string hand = "pointer";
     double gain = 0;                          ///< force on the hand over force of the hair; 0: that of the brush
     double most_force = haptic::kForceLimit;  ///< N
+    double proximity = 0;                     ///< N on the hand over the last millimetre before the hair touches
     bool restore = false;                     ///< takes the softness of the coupling away, see haptic/law.h
     double scale = 1;                         ///< metres of the brush per metre of the arm
     bool with_view = true;                    ///< the arm's axes turn with the view; else they are the model's
@@ -74,7 +75,8 @@ class Arm {
     void set_workspace(const Vec3& about, const Quat& axes, bool moves);
     /// Ends an emergency.
     void release();
-    void set_ink(double wetness, double ink_left);
+    /// Of the hair, and the yield stress of the paste in it, Pa, or 0.
+    void set_ink(double wetness, double ink_left, double yield_stress);
     /// Where the hand of a simulated arm with the hand "pointer" shall be: root of the brush, m, world.
     void point_to(const Vec3& root, const Quat& rotation);
 

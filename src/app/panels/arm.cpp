@@ -247,6 +247,8 @@ void force_section(Session& s) {
         a.gain = gain, changed = true;
     changed |= ui.slider("Limit", a.most_force, {0.5, haptic::kForceLimit, "%.1f N"},
                          "The hand feels no more than this, nor more than the arm can give");
+    changed |= ui.slider("Proximity", a.proximity, {0, kMostArmProximity, "%.2f N"},
+                         "Felt over the last millimetre before the hair touches; 0: not at all");
     changed |= ui.toggle("Firm at rest", a.restore,
                          "A hand at rest feels the whole force, not softened by the coupling; the arm's friction pays");
     if (changed) store_settings(s);

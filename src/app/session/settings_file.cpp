@@ -40,6 +40,8 @@ void load_arm(ArmState& arm, const std::string& key, const std::string& value) {
         a.gain = number_within(value, 0, kMostArmGain);
     else if (key == "arm_limit")
         a.most_force = number_within(value, 0.1, haptic::kForceLimit);
+    else if (key == "arm_proximity")
+        a.proximity = number_within(value, 0, kMostArmProximity);
     else if (key == "arm_scale")
         a.scale = number_within(value, kLeastArmScale, kMostArmScale);
     else if (key == "arm_view")
@@ -54,7 +56,8 @@ void store_arm(const ArmState& arm, std::ostream& out) {
     const ArmSettings& a = arm.settings;
     out << "arm_source " << static_cast<int>(a.source) << "\narm_preset " << a.preset << "\narm_host " << a.host
         << "\narm_port " << a.port << "\narm_gain " << a.gain << "\narm_limit " << a.most_force << "\narm_scale "
-        << a.scale << "\narm_view " << a.with_view << "\narm_restore " << a.restore << '\n';
+        << a.scale << "\narm_view " << a.with_view << "\narm_restore " << a.restore << "\narm_proximity " << a.proximity
+        << '\n';
     for (int i = 0; i < 3; ++i)
         out << "arm_centre_"
             << "xyz"[i] << ' ' << a.centre[i] << '\n';

@@ -13,6 +13,7 @@ namespace tuft::app {
 
 /// Bounds of what a person can choose.
 inline constexpr double kMostArmGain = 40, kLeastArmScale = 0.1, kMostArmScale = 2;
+inline constexpr double kMostArmProximity = 0.3;  // N
 
 /// Of `ArmState::regrips_until`: from the next frame on.
 inline constexpr double kRegripsSoon = -1;

@@ -250,6 +250,8 @@ constexpr Setting kArmSettings[] = {
     {"arm-gain", [](Session& s, const SettingValue& v) { s.arm.settings.gain = v.within(0, kMostArmGain); }},
     {"arm-limit",
      [](Session& s, const SettingValue& v) { s.arm.settings.most_force = v.within(0.1, haptic::kForceLimit); }},
+    {"arm-proximity",
+     [](Session& s, const SettingValue& v) { s.arm.settings.proximity = v.within(0, kMostArmProximity); }},
     {"arm-scale",
      [](Session& s, const SettingValue& v) { s.arm.settings.scale = v.within(kLeastArmScale, kMostArmScale); }},
     {"arm-view", [](Session& s, const SettingValue& v) { s.arm.settings.with_view = v.on; }},

@@ -92,7 +92,8 @@ void ArmInput::control(double now) {
                         .emergency = a.emergency,
                         .clutched = a.clutched || regrips,
                         .clutch_buttons = kClutch});
-    a.arm->set_ink(s.reported.brush.wetness, s.reported.brush.fullness);
+    const ink::Ink* ink = s.brush.erases ? nullptr : find_ink(s.colours, s.brush.ink);
+    a.arm->set_ink(s.reported.brush.wetness, s.reported.brush.fullness, ink ? ink->yield : 0);
 }
 
 // A fault is said once, in one line.
