@@ -27,7 +27,7 @@ class SceneNames {
 
     /// The name of a part's group, and the one node whose parts are in it.
     std::pair<std::string, std::int32_t> of(const ScenePart& part) const {
-        if (!part.group.empty()) return {part.group, kAnyNode};
+        if (!part.group.empty()) return {part.group, part.object.empty() ? kAnyNode : part.node};
         const bool painted = is_decorated(part.material);
         const bool names_it = part.own_material >= 0 && !part.material.empty();
         if (names_it && !painted && nodes_of_.at(part.own_material).size() == 1) return {part.material, kAnyNode};
@@ -40,6 +40,14 @@ class SceneNames {
   private:
     std::map<std::int32_t, std::set<std::int32_t>> nodes_of_, materials_of_;
 };
+
+/// UTF-8 without what is beyond this many bytes.
+std::string cut(std::string name, std::size_t most) {
+    if (name.size() <= most) return name;
+    while (most > 0 && (static_cast<unsigned char>(name[most]) & 0xc0) == 0x80) --most;
+    name.resize(most);
+    return name;
+}
 
 }  // namespace
 
@@ -54,8 +62,11 @@ PartGroups group_parts(std::span<const ScenePart> parts) {
         const auto [it, is_new] =
             group_of.try_emplace({name, part.own_material, node}, static_cast<std::uint32_t>(groups.names.size()));
         if (is_new) {
-            std::string unlike = name;
-            for (int& n = same_name[name]; !taken.insert(unlike).second;) unlike = name + " " + std::to_string(n++ + 2);
+            std::string unlike = cut(name, kMaxPartNameBytes);
+            for (int& n = same_name[name]; !taken.insert(unlike).second;) {
+                const std::string number = " " + std::to_string(n++ + 2);
+                unlike = cut(name, kMaxPartNameBytes - number.size()) + number;
+            }
             groups.names.push_back(std::move(unlike));
         }
         groups.of_part.push_back(it->second);

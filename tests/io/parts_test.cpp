@@ -227,10 +227,13 @@ TEST_F(Parts, OnlyWhatIsPaintedGetsTheDecoratedMaterial) {
     export_painted(folder / "out.glb", model, ink_on(model, "Wheel right", "Rubber"));
     const json before = glb_json(folder / "truck.glb"), after = glb_json(folder / "out.glb");
     EXPECT_EQ(names_in(after["nodes"]), names_in(before["nodes"]));
-    for (std::size_t n = 0; n < before["nodes"].size(); ++n)
-        for (const char* key : {"children", "translation", "rotation", "scale"})
-            EXPECT_EQ(after["nodes"][n].value(key, json()), before["nodes"][n].value(key, json())) << n << key;
-    EXPECT_EQ(after["nodes"][1]["extras"]["plate"], before["nodes"][1]["extras"]["plate"]);
+    for (std::size_t n = 0; n < before["nodes"].size(); ++n) {
+        json node = after["nodes"][n];
+        if (node.contains("extras") && node["extras"].erase("tuft_parts") && node["extras"].empty())
+            node.erase("extras");
+        for (const char* key : {"children", "translation", "rotation", "scale", "extras"})
+            EXPECT_EQ(node.value(key, json()), before["nodes"][n].value(key, json())) << n << key;
+    }
     EXPECT_THAT(names_in(after["materials"]), ElementsAre("Paint", "Glass", "Rubber", "Chrome", "Flag", "decorated"));
     EXPECT_THAT(names_in(after["meshes"]), ElementsAre("body mesh", "wheel mesh", "flag mesh", "wheel mesh"))
         << "the other wheel shows the mesh that both had";
@@ -468,7 +471,7 @@ TEST_F(Parts, OfGlassKeepTheirNamesAndGetATransmissionMap) {
 
 /// Boxes as Blender writes them: objects that share a material, one of them of two; one with a mesh of its own
 /// material.
-std::vector<char> blender_glb() {
+std::vector<char> blender_glb(const json& part_names = {}) {
     GltfMaker maker;
     json& d = maker.document;
     d["materials"] = json::parse(R"([{"name":"Paint","pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1]}},
@@ -482,8 +485,14 @@ std::vector<char> blender_glb() {
     d["meshes"].push_back({{"name", "Cube.004"}, {"primitives", {maker.box(at(8), size, 1)}}});
     d["nodes"] = json::parse(R"([{"name":"Hood","mesh":0},{"name":"Door","mesh":1},{"name":"Tyre","mesh":2},
       {"name":"Window","mesh":3},{"name":"Tyre","mesh":2,"translation":[0,3,0]}])");
+    if (!part_names.is_null()) d["nodes"][1]["extras"]["tuft_parts"] = part_names;
     d["scenes"] = {{{"nodes", {0, 1, 2, 3, 4}}}};
     return maker.glb();
+}
+
+void write_blender(const fs::path& path, const json& part_names) {
+    const std::vector<char> bytes = blender_glb(part_names);
+    write_file(path, bytes.data(), bytes.size());
 }
 
 TEST(PartsOfNodes, ThatShareAMaterialAreOneEach) {
@@ -515,6 +524,24 @@ TEST(PartsOfNodes, AreTheSameInWhatIsExported) {
             EXPECT_EQ(read_model(folder / "twice.glb").group_names, model.mesh->group_names) << object;
         }
     }
+}
+
+// Where another program took a primitive away, a list of names says nothing of the others.
+TEST(PartsOfNodes, HaveTheirOwnNamesWhereThoseOfAnExportAreNotOneEach) {
+    const Folder folder("fewer");
+    write_blender(folder / "in.glb", {"Roof", "Lid", "Sill"});
+    EXPECT_THAT(read_model(folder / "in.glb").group_names,
+                ElementsAre("Hood", "Door / Paint", "Door / Glass", "Tyre", "Window", "Tyre 2"));
+}
+
+// What a part of glTF is called is no group: "Door / Paint" would become "Door / Door / Paint / decorated".
+TEST(PartsOfNodes, AreNotGroupsInObj) {
+    const Folder folder("obj");
+    write_blender(folder / "in.glb", {"Door / Paint", "Door / Glass"});
+    const stroke::Model model = model_of(read_model(folder / "in.glb"));
+    export_painted(folder / "out.obj", model, ink_on(model, "Door", "Paint"));
+    const std::vector<char> text = read_file(folder / "out.obj");
+    EXPECT_EQ(std::string(text.begin(), text.end()).find("\ng "), std::string::npos);
 }
 
 // Another program leaves out what an export says of names.

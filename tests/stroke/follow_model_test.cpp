@@ -2,14 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include "core/random.h"
 #include "core/text/units.h"
 #include "ink/canvas/canvas.h"
+#include "mesh/part_groups.h"
 #include "sheet.h"
 #include "stroke/drawing/drawing.h"
+#include "stroke/drawing/follow_names.h"
 #include "stroke/placement/placement.h"
 #include "stroke/placement/registration.h"
 
@@ -366,7 +370,7 @@ TEST(FollowNames, AreThoseThatThePartsHaveToday) {
     entries[0].content = PartEdit{{{.name = "Glass", .hidden = true}, {.name = "Paint", .locked = true}}};
     entries[1].content = MaskEdit{.mask = {.kind = MaskKind::group, .groups = {"Paint", "Glass"}}};
     entries[2].content = Dry{};
-    entries = follow_names(std::move(entries), former, revised);
+    entries = follow_names(std::move(entries), former, revised).entries;
     EXPECT_EQ(former.group_names, revised.group_names);
     EXPECT_EQ(former.triangle_groups, revised.triangle_groups);
     ASSERT_EQ(former.materials.size(), 3u);
@@ -376,6 +380,108 @@ TEST(FollowNames, AreThoseThatThePartsHaveToday) {
         {{.name = "Door", .locked = true}, {.name = "Glass", .hidden = true}, {.name = "Hood", .locked = true}}};
     EXPECT_EQ(entries[0].get<PartEdit>(), expected);
     EXPECT_EQ(entries[1].get<MaskEdit>().mask.groups, (std::vector<std::string>{"Door", "Hood", "Glass"}));
+}
+
+using Names = std::vector<std::string>;
+using Objects = std::vector<std::pair<std::string, std::string>>;  // and their materials
+
+/// A glTF file with a triangle for each object, named as they are read today.
+mesh::TriangleMesh file_of(const Objects& objects) {
+    mesh::TriangleMesh m;
+    auto scene = std::make_shared<mesh::SourceScene>();
+    std::map<std::string, std::int32_t> materials;
+    for (const auto& [object, material] : objects) {
+        const auto id = materials.try_emplace(material, static_cast<std::int32_t>(materials.size())).first->second;
+        const auto node = static_cast<std::int32_t>(scene->parts.size());
+        scene->parts.push_back(
+            {.object = object, .material = material, .node = node, .primitive = 0, .own_material = id});
+        m.triangles.push_back({0, 1, 2});
+        m.triangle_parts.push_back(static_cast<std::uint32_t>(node));
+    }
+    m.scene = scene;
+    m.triangle_groups.assign(objects.size(), 0);
+    m.group_names = {""};
+    return mesh::with_part_groups(m);
+}
+
+/// As it was read when all nodes of a material were one part.
+mesh::TriangleMesh old_file_of(const Objects& objects) {
+    mesh::TriangleMesh m = file_of(objects);
+    m.group_names.clear();
+    for (std::size_t t = 0; t < objects.size(); ++t) {
+        const auto at = std::ranges::find(m.group_names, objects[t].second) - m.group_names.begin();
+        m.triangle_groups[t] = static_cast<std::uint32_t>(at);
+        if (static_cast<std::size_t>(at) == m.group_names.size()) m.group_names.push_back(objects[t].second);
+    }
+    return m;
+}
+
+/// What a mask of these parts holds, and which parts are locked where these were.
+struct Followed {
+    Names mask, locked, former;
+    std::size_t notes = 0;
+};
+
+Followed follow(mesh::TriangleMesh former, const mesh::TriangleMesh& revised, const Names& names) {
+    std::vector<JournalEntry> entries(2);
+    entries[0].content = MaskEdit{.mask = {.kind = MaskKind::group, .groups = names}};
+    PartEdit edit;
+    for (const std::string& name : names) edit.parts.push_back({.name = name, .locked = true});
+    entries[1].content = edit;
+    const NamedEntries named = follow_names(std::move(entries), former, revised);
+    Followed out{
+        .mask = named.entries[0].get<MaskEdit>().mask.groups, .locked = {}, .former = {}, .notes = named.notes.size()};
+    for (const Part& part : named.entries[1].get<PartEdit>().parts) out.locked.push_back(part.name);
+    for (const std::uint32_t group : former.triangle_groups) out.former.push_back(former.group_names[group]);
+    return out;
+}
+
+// A part's name depends on how many others share its material.
+TEST(FollowNames, OfPartsThatStayedWhileOthersCameAndWent) {
+    const Objects one{{"Hood", "Paint"}, {"Tyre", "Rubber"}};
+    const Objects two{{"Hood", "Paint"}, {"Door", "Paint"}, {"Tyre", "Rubber"}};
+    const Followed added = follow(file_of(one), file_of(two), {"Paint"});
+    EXPECT_EQ(added.mask, (Names{"Hood"}));
+    EXPECT_EQ(added.locked, (Names{"Hood"}));
+    EXPECT_EQ(added.former, (Names{"Hood", "Rubber"})) << "the motion of parts is searched by these";
+
+    const Followed removed = follow(file_of(two), file_of(one), {"Hood", "Door"});
+    EXPECT_EQ(removed.mask, (Names{"Paint"}));
+    EXPECT_EQ(removed.locked, (Names{"Door", "Paint"})) << "that of a part that is gone has no effect";
+    EXPECT_EQ(removed.notes, 0u);
+    const Followed gone = follow(file_of(two), file_of(one), {"Door"});
+    EXPECT_EQ(gone.mask, (Names{"Door"}));
+    EXPECT_EQ(gone.notes, 1u);
+
+    Objects renamed = two;
+    renamed[0].first = "Bonnet";
+    const Followed other = follow(file_of(two), file_of(renamed), {"Hood"});
+    EXPECT_EQ(other.mask, (Names{"Bonnet"}));
+    EXPECT_EQ(other.locked, (Names{"Bonnet"}));
+    EXPECT_EQ(other.former, (Names{"Bonnet", "Door", "Rubber"}));
+}
+
+// All former names are there today, but hold less.
+TEST(FollowNames, OfAMaterialThatIsCalledAsOneOfItsObjects) {
+    const Objects car{{"Body", "Body"}, {"Hood", "Body"}, {"Lamp", "Glass"}};
+    const Followed body = follow(old_file_of(car), file_of(car), {"Body"});
+    EXPECT_EQ(body.mask, (Names{"Body", "Hood"}));
+    EXPECT_EQ(body.locked, (Names{"Body", "Hood"}));
+    EXPECT_EQ(body.former, (Names{"Body", "Hood", "Glass"}));
+}
+
+TEST(FollowNames, LeaveOutWhatTheRevisedModelLacks) {
+    const Objects car{{"Hood", "Paint"}, {"Door", "Paint"}, {"Spoiler", "Paint"}};
+    const Followed paint = follow(old_file_of(car), file_of({car[0], car[1]}), {"Paint"});
+    EXPECT_EQ(paint.mask, (Names{"Door", "Hood"}));
+}
+
+TEST(FollowNames, OfEqualObjectsAreInTheOrderOfTheFile) {
+    const Objects tyres{{"Tyre", "Rubber"}, {"Tyre", "Rubber"}, {"Hood", "Paint"}};
+    const Followed same = follow(file_of(tyres), file_of(tyres), {"Tyre 2"});
+    EXPECT_EQ(same.mask, (Names{"Tyre 2"}));
+    EXPECT_EQ(same.locked, (Names{"Tyre 2"}));
+    EXPECT_EQ(follow(old_file_of(tyres), file_of(tyres), {"Rubber"}).mask, (Names{"Tyre", "Tyre 2"}));
 }
 
 }  // namespace

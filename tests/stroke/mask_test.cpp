@@ -75,6 +75,17 @@ PaintStroke quick() {
     return s;
 }
 
+// A revised model may lack them.
+TEST(Mask, OfGroupsThatAreGoneCoverNothing) {
+    const MaskEdit edit{.mask = {.id = 1, .name = "m", .kind = MaskKind::group, .groups = {"rim", "upper"}}};
+    MaskTable table;
+    apply(table, edit);
+    EXPECT_NEAR(share(table.masks[0], table, ball()), 0.5, 0.01) << "the upper half, within a texel along the equator";
+    Document document(ball());
+    EXPECT_THROW(document.paint(MaskEdit(edit)), Error) << "a new one is a slip of the pen";
+    EXPECT_NO_THROW(document.replay({entry_after({}, MaskEdit(edit))}));
+}
+
 TEST(Mask, ByAngleIsACap) {
     const double half = 50 * kDegree;
     const Mask hard{.name = "cap", .kind = MaskKind::angle, .direction = {0, 0, 3}, .within = half};
@@ -105,7 +116,7 @@ TEST(Mask, ByGroupIsTheGroupAndItsInverseTheRest) {
                 ASSERT_EQ(upper.coverage(slot, t), z > 0 ? 255 : 0);
             }
         }
-    EXPECT_THROW(evaluate({.name = "x", .kind = MaskKind::group, .groups = {"uper"}}, {}, ball()), Error);
+    EXPECT_THROW(check_groups({.name = "x", .kind = MaskKind::group, .groups = {"uper"}}, *ball().mesh), Error);
 }
 
 TEST(Mask, ByLassoIsWhatIsSeen) {

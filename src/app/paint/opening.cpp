@@ -13,6 +13,7 @@
 #include "io/project/appearance.h"
 #include "io/project/restore.h"
 #include "stroke/drawing/follow_model.h"
+#include "stroke/drawing/follow_names.h"
 
 namespace fs = std::filesystem;
 
@@ -102,7 +103,8 @@ void copy_strokes(const fs::path& former, bool follow, PaintWork& work, const Pr
     work.autosave.take_presets(project);
     work.autosave.take_attachments(project);
     mesh::TriangleMesh mesh = project.model().mesh;
-    const std::vector<stroke::JournalEntry> strokes = stroke::follow_names(project.strokes(), mesh, *work.model->mesh);
+    const stroke::NamedEntries named = stroke::follow_names(project.strokes(), mesh, *work.model->mesh);
+    const std::vector<stroke::JournalEntry>& strokes = named.entries;
     const auto length_of = [&](const std::string& brush) { return work.document->materials().brush(brush).length; };
     const mesh::SurfaceQuery before(mesh);
     const Message fault = stroke::size_fault(strokes, length_of, before, *work.model->query);
@@ -115,6 +117,7 @@ void copy_strokes(const fs::path& former, bool follow, PaintWork& work, const Pr
     work.mismatches = stroke::find_mismatches(reports, fits);
     work.motion = change.whole;
     work.fit = {Message("{}.", stroke::describe(stroke::total_of(fits, work.mismatches)))};
+    work.fit.insert(work.fit.end(), named.notes.begin(), named.notes.end());
     if (change.whole) work.fit.push_back(Message("The revised model is the former one {}.", describe(*change.whole)));
     for (const stroke::PartMotion& part : change.parts)
         work.fit.push_back(Message("The part '{}' is {}.", part.name, describe(part.motion)));

@@ -12,6 +12,7 @@
 #include "core/text/text.h"
 #include "core/text/units.h"
 #include "stroke/journal/tables.h"
+#include "stroke/surface/mask_texels.h"
 
 /// `tuft mask`: masks of a project, made and ended by entries of its journal.
 namespace tuft::cli {
@@ -104,6 +105,7 @@ int run(const MaskWork& a) {
         // Looked at before it is kept: groups that are not there, a lasso beside the model.
         const auto opened = open_project(a.project, io::Access::read, console);
         if (!a.chart_mm.empty()) check_on_surface(opened->model, kMillimetre * vector_of(a.chart_mm), "--chart");
+        stroke::check_groups(edit.mask, *opened->model.mesh);
         const stroke::MaskTexels texels = stroke::evaluate(edit.mask, table, opened->model);
         for (std::uint32_t slot = 0; slot < opened->model.texels.n_slots(); ++slot)
             for (int t = 0; t < atlas::kTileTexels; ++t)

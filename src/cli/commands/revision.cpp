@@ -10,6 +10,7 @@
 #include "core/system/parallel.h"
 #include "core/text/units.h"
 #include "stroke/drawing/follow_model.h"
+#include "stroke/drawing/follow_names.h"
 #include "stroke/gesture/hand.h"
 #include "stroke/placement/placement.h"
 
@@ -150,7 +151,7 @@ const mesh::SurfaceQuery& former_surface(const Replay& a, const OpenProject& pro
 }
 
 RevisedStrokes replay_strokes(const Replay& a, const OpenProject& project, stroke::Document& painting) {
-    RevisedStrokes out{.change = {}, .former = project.file.strokes(), .followed = {}};
+    RevisedStrokes out{.change = {}, .former = project.file.strokes(), .followed = {}, .notes = {}};
     for (stroke::JournalEntry& s : out.former) {
         if (!a.brush.empty()) stroke::set_brush(s, a.brush);
         if (!a.ink.empty()) stroke::set_ink(s, a.ink);
@@ -158,7 +159,9 @@ RevisedStrokes replay_strokes(const Replay& a, const OpenProject& project, strok
     find_presets(painting, out.former);
     const mesh::SurfaceQuery &former = former_surface(a, project, painting), &revised = *painting.model().query;
     if (!a.model.empty()) {
-        out.former = stroke::follow_names(std::move(out.former), *project.model.mesh, revised.mesh());
+        auto named = stroke::follow_names(std::move(out.former), *project.model.mesh, revised.mesh());
+        out.former = std::move(named.entries);
+        out.notes = std::move(named.notes);
         const Message fault = stroke::size_fault(out.former, lengths_of(painting), former, revised);
         if (!fault.empty()) throw Error(a.model.string(), Message("{} (see --unit)", fault));
         out.change = stroke::find_change(former, revised, freedom_of(a));
@@ -191,6 +194,7 @@ Fit find_fit(const Replay& a, const RevisedStrokes& strokes, stroke::Document& p
 void note_fit(const Replay& a, const RevisedStrokes& strokes, const Fit& fit, Console& console) {
     for (const stroke::StrokeMismatch& m : fit.mismatches)
         console.note(fmt::format("warning: stroke {} no longer fits: {}", m.stroke, m.reason.text()));
+    for (const Message& note : strokes.notes) console.note("warning: " + note.text());
     const stroke::ModelChange& change = strokes.change;
     if (change.whole)
         console.note("warning: the revised model is the former one " + stroke::describe(*change.whole).text());

@@ -16,6 +16,7 @@ struct RevisedStrokes {
     stroke::ModelChange change;                  ///< of the model; none where the model is the project's own
     std::vector<stroke::JournalEntry> former;    ///< as the project has them
     std::vector<stroke::JournalEntry> followed;  ///< as they are painted
+    std::vector<Message> notes;                  ///< on masks whose parts are gone
 };
 
 /// Returns the surface that a project was painted on. `painting` is on the model of `replay_model`.

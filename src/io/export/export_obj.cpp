@@ -245,7 +245,8 @@ void write_faces(TextFile& file, const ExportScene& scene, const std::vector<std
         const auto [it, is_new] = object_names.try_emplace({node, part.object});
         if (is_new) it->second = objects.get(part.object.empty() ? scene.name : line_name(part.object));
         if (it->second != object) text += "o " + (object = it->second) + "\n";
-        const std::string in_group = part.group.empty() ? "" : line_name(part.group);
+        // That of a glTF file is what its part is called, not a group.
+        const std::string in_group = part.group.empty() || part.primitive >= 0 ? "" : line_name(part.group);
         if (in_group != group) text += "g " + (group = in_group) + "\n";
         if (materials[i] != material) text += "usemtl " + (material = materials[i]) + "\n";
         const bool with_uvs = scene.decorated[i] || own_uvs;

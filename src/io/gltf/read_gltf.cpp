@@ -215,12 +215,13 @@ class Gatherer {
         for (std::size_t p = 0; p < mesh->primitives.size(); ++p) {
             const tinygltf::Primitive& primitive = mesh->primitives[p];
             const tinygltf::Material* material = element(model_.materials, primitive.material);
-            mesh::ScenePart part{.object = at && !at->name.empty() ? at->name : mesh->name,
-                                 .group = exported_name(model_.nodes.empty() ? nullptr : at, p),
-                                 .material = material ? material->name : "",
-                                 .node = node,
-                                 .primitive = static_cast<std::int32_t>(p),
-                                 .own_material = material ? primitive.material : -1};
+            mesh::ScenePart part{
+                .object = at && !at->name.empty() ? at->name : mesh->name,
+                .group = exported_name(model_.nodes.empty() ? nullptr : at, p, mesh->primitives.size()),
+                .material = material ? material->name : "",
+                .node = node,
+                .primitive = static_cast<std::int32_t>(p),
+                .own_material = material ? primitive.material : -1};
             for (int i = 0; i < 16; ++i) part.transform[static_cast<std::size_t>(i)] = world[i / 4][i % 4];
             parts_.push_back(std::move(part));
             add_primitive(*mesh, primitive, world);
@@ -243,11 +244,11 @@ class Gatherer {
         }
     }
 
-    /// Name that an export gave a primitive of a node.
-    static std::string exported_name(const tinygltf::Node* node, std::size_t primitive) {
+    /// Name that an export gave a primitive of a node; none where another program changed the primitives since.
+    static std::string exported_name(const tinygltf::Node* node, std::size_t primitive, std::size_t n_primitives) {
         if (!node || !node->extras.Has(kPartNames)) return {};
         const tinygltf::Value& names = node->extras.Get(kPartNames);
-        if (!names.IsArray() || primitive >= names.ArrayLen()) return {};
+        if (!names.IsArray() || names.ArrayLen() != n_primitives) return {};
         const tinygltf::Value& name = names.Get(static_cast<int>(primitive));
         return name.IsString() ? name.Get<std::string>() : std::string();
     }

@@ -9,6 +9,7 @@
 #include "stroke/journal/tables.h"
 #include "stroke/session/session.h"
 #include "stroke/surface/flat_texels.h"
+#include "stroke/surface/mask_texels.h"
 
 /// The journal: painting, replaying, taking back. What one entry does is in document_entries.cpp and
 /// document_stroke.cpp.
@@ -40,6 +41,7 @@ void Document::check_layer(const JournalEntry& entry) const {
         for (const Part& part : edit->parts) names.push_back(part.name);
         check_part_names(*model_.mesh, names);
     }
+    if (const MaskEdit* edit = entry.as<MaskEdit>(); edit && !edit->remove) check_groups(edit->mask, *model_.mesh);
     if (!entry.as<PaintStroke>() && !entry.as<Fill>()) return;
     if (on_palette(entry)) return;
     const std::uint32_t id = layer_of(entry), mask = mask_of(entry);

@@ -4,11 +4,9 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "brush/preset/preset.h"
 #include "core/overloaded.h"
-#include "mesh/part_groups.h"
 #include "stroke/drawing/drawing.h"
 #include "stroke/placement/placement.h"
 
@@ -173,57 +171,7 @@ std::vector<double> without_gaps(const std::vector<std::optional<double>>& value
     return out;
 }
 
-using NewNames = std::map<std::string, std::set<std::string>>;
-
-void rename(PartEdit& edit, const NewNames& names) {
-    std::map<std::string, Part> parts;  // the last word on a part counts
-    for (const Part& part : edit.parts) {
-        const auto known = names.find(part.name);
-        if (known == names.end()) {
-            parts[part.name] = part;
-            continue;
-        }
-        for (const std::string& name : known->second) {
-            parts[name] = part;
-            parts[name].name = name;
-        }
-    }
-    edit.parts.clear();
-    for (auto& [name, part] : parts) edit.parts.push_back(std::move(part));
-}
-
-void rename(std::vector<std::string>& groups, const NewNames& names) {
-    std::vector<std::string> renamed;
-    for (const std::string& name : groups) {
-        const auto known = names.find(name);
-        if (known == names.end())
-            renamed.push_back(name);
-        else
-            renamed.insert(renamed.end(), known->second.begin(), known->second.end());
-    }
-    groups = std::move(renamed);
-}
-
 }  // namespace
-
-std::vector<JournalEntry> follow_names(std::vector<JournalEntry> entries, mesh::TriangleMesh& former,
-                                       const mesh::TriangleMesh& revised) {
-    const std::set<std::string> today(revised.group_names.begin(), revised.group_names.end());
-    if (std::ranges::all_of(former.group_names, [&](const std::string& name) { return today.contains(name); }))
-        return entries;
-    mesh::TriangleMesh renamed = mesh::with_part_groups(former);
-    NewNames names;
-    for (std::size_t t = 0; t < former.triangle_groups.size(); ++t)
-        names[former.group_names[former.triangle_groups[t]]].insert(renamed.group_names[renamed.triangle_groups[t]]);
-    former.triangle_groups = std::move(renamed.triangle_groups);
-    former.group_names = std::move(renamed.group_names);
-    former.materials = std::move(renamed.materials);
-    for (JournalEntry& entry : entries) {
-        if (PartEdit* edit = entry.as<PartEdit>()) rename(*edit, names);
-        if (MaskEdit* edit = entry.as<MaskEdit>()) rename(edit->mask.groups, names);
-    }
-    return entries;
-}
 
 std::vector<JournalEntry> follow_model(std::vector<JournalEntry> entries, const ModelChange& change,
                                        const mesh::SurfaceQuery& former) {

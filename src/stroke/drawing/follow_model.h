@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "mesh/query/surface_query.h"
-#include "mesh/triangle_mesh.h"
 #include "stroke/journal/entry/entry.h"
 #include "stroke/placement/model_motion.h"
 
@@ -24,12 +23,6 @@ namespace tuft::stroke {
 /// edits do not change. Cost: a mapping of each flat stroke where parts moved.
 std::vector<JournalEntry> follow_model(std::vector<JournalEntry> entries, const ModelChange& change,
                                        const mesh::SurfaceQuery& former);
-
-/// Gives the former model, where the revised one lacks the name of one of its parts, the names that its file's parts
-/// have today (mesh/part_groups.h). Returns the entries with those names: a part that is several now has its state on
-/// each of them, and a mask of it holds them all. Called before `find_change`.
-std::vector<JournalEntry> follow_names(std::vector<JournalEntry> entries, mesh::TriangleMesh& former,
-                                       const mesh::TriangleMesh& revised);
 
 /// Returns the motion that a stroke follows: that of the group on which more than half of its ink lies on the former
 /// model, else that of the whole model.

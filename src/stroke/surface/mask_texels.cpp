@@ -67,14 +67,10 @@ MaskTexels by_group(const Mask& mask, const Model& model) {
     std::vector<std::uint8_t> wanted(mesh.group_names.size(), 0);
     for (const std::string& name : mask.groups) {
         const auto at = std::find(mesh.group_names.begin(), mesh.group_names.end(), name);
-        if (at == mesh.group_names.end() || mesh.triangle_groups.empty()) {
-            const std::string near = nearest_name(name, mesh.group_names);
-            throw Error(Message("the mesh has no group '{}'{}", name, did_you_mean(near)));
-        }
-        wanted[static_cast<std::size_t>(at - mesh.group_names.begin())] = 1;
+        if (at != mesh.group_names.end()) wanted[static_cast<std::size_t>(at - mesh.group_names.begin())] = 1;
     }
-    std::vector<std::uint8_t> chosen(mesh.n_triangles());
-    for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = wanted[mesh.triangle_groups[i]];
+    std::vector<std::uint8_t> chosen(mesh.n_triangles(), 0);
+    for (std::size_t i = 0; i < mesh.triangle_groups.size(); ++i) chosen[i] = wanted[mesh.triangle_groups[i]];
     const std::vector<Coverage> in = texels_of(chosen, model);
     return by_texel(model, [&](std::uint32_t slot, int t) {
         const std::uint8_t value = in[slot][static_cast<std::size_t>(t)];
@@ -245,6 +241,16 @@ MaskTexels evaluate_one(const Mask& mask, const Parts& done, const Model& model)
 }
 
 }  // namespace
+
+void check_groups(const Mask& mask, const mesh::TriangleMesh& mesh) {
+    if (mask.kind != MaskKind::group) return;
+    for (const std::string& name : mask.groups) {
+        const bool known = std::ranges::find(mesh.group_names, name) != mesh.group_names.end();
+        if (known && !mesh.triangle_groups.empty()) continue;
+        const std::string near = nearest_name(name, mesh.group_names);
+        throw Error(Message("the mesh has no group '{}'{}", name, did_you_mean(near)));
+    }
+}
 
 MaskTexels evaluate(const Mask& mask, const MaskTable& table, const Model& model) {
     // Each part once, however often it is named; a mask is made of earlier ones only.

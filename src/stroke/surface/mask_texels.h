@@ -34,7 +34,10 @@ class MaskTexels {
 
 /// Evaluates a mask of `table` on a model's texels. Edges of groups and charts are hard, those of a lasso one texel
 /// wide, as are those of `clear`, those of an angle as soft as its `soft`. The same bits for any number of threads.
-/// Throws `Error` for groups that the mesh lacks.
+/// Groups that the mesh lacks, as a revised one may, cover nothing.
 MaskTexels evaluate(const Mask& mask, const MaskTable& table, const Model& model);
+
+/// Throws `Error` for a new mask of groups that the mesh lacks.
+void check_groups(const Mask& mask, const mesh::TriangleMesh& mesh);
 
 }  // namespace tuft::stroke

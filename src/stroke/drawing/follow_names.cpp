@@ -1,0 +1,266 @@
+#include "stroke/drawing/follow_names.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "mesh/part_groups.h"
+
+namespace tuft::stroke {
+namespace {
+
+using IndexPair = std::pair<std::uint32_t, std::uint32_t>;
+using NewNames = std::map<std::string, std::set<std::string>>;  // of today, by former name
+
+/// The pairs of indices that triangles have, each once, ascending.
+template <class PairOf>
+std::vector<IndexPair> pairs_of(const mesh::TriangleMesh& mesh, PairOf pair_of) {
+    std::set<IndexPair> pairs;
+    IndexPair last(kNone, kNone);
+    for (std::size_t t = 0; t < mesh.n_triangles(); ++t)
+        if (const IndexPair pair = pair_of(t); pair != last) pairs.insert(last = pair);
+    return {pairs.begin(), pairs.end()};
+}
+
+/// The part of a file that is a group of its mesh, or lies in one.
+struct GroupPart {
+    std::uint32_t part = 0, group = 0;
+    std::string object, material;  ///< with the object its group, in files that have groups
+};
+
+bool has_parts(const mesh::TriangleMesh& mesh) {
+    if (!mesh.scene) return false;
+    for (std::size_t t = 0; t < mesh.n_triangles(); ++t)
+        if (mesh::part_of(mesh, t) >= mesh.scene->parts.size()) return false;
+    return true;
+}
+
+/// Without a scene the groups are taken for materials.
+std::vector<GroupPart> group_parts_of(const mesh::TriangleMesh& mesh) {
+    std::vector<GroupPart> out;
+    if (mesh.triangle_groups.empty()) return out;
+    const bool known = has_parts(mesh);
+    const auto pairs = pairs_of(mesh, [&](std::size_t t) {
+        return IndexPair(known ? mesh::part_of(mesh, t) : mesh.triangle_groups[t], mesh.triangle_groups[t]);
+    });
+    for (const auto& [part, group] : pairs) {
+        out.push_back({.part = part, .group = group, .object = {}, .material = mesh.group_names[group]});
+        if (!known) continue;
+        const mesh::ScenePart& of = mesh.scene->parts[part];
+        const bool grouped = of.primitive < 0 && !of.group.empty();  // glTF has no groups
+        out.back().object = grouped ? of.object + '\n' + of.group : of.object;
+        out.back().material = of.material;
+    }
+    return out;
+}
+
+/// Groups in which the parts of the former model are in the revised one.
+class PartMatch {
+  public:
+    PartMatch(const mesh::TriangleMesh& former, const mesh::TriangleMesh& revised)
+        : was_(group_parts_of(former)),
+          is_(group_parts_of(revised)),
+          found_(was_.size()),
+          taken_(revised.group_names.size(), false) {
+        match_equal();
+        match_rest([](const GroupPart& part) { return part.object; },
+                   [](const GroupPart& part) { return part.object; });
+        match_rest([&](const GroupPart& part) { return former.group_names[part.group]; },
+                   [&](const GroupPart& part) { return revised.group_names[part.group]; });
+        match_rest([](const GroupPart& part) { return part.material; },
+                   [](const GroupPart& part) { return part.material; });
+    }
+
+    const std::vector<GroupPart>& former() const { return was_; }
+    /// Groups of the revised model that a former part is in; the first is its own. Empty: it is gone.
+    const std::vector<std::uint32_t>& groups(std::size_t i) const { return found_[i]; }
+
+  private:
+    using Members = std::map<std::pair<std::string, std::string>, std::vector<std::size_t>>;
+
+    static Members by_names(const std::vector<GroupPart>& parts) {
+        Members members;
+        for (std::size_t i = 0; i < parts.size(); ++i) members[{parts[i].object, parts[i].material}].push_back(i);
+        return members;
+    }
+
+    static std::vector<std::uint32_t> groups_of(const std::vector<GroupPart>& parts,
+                                                const std::vector<std::size_t>& members) {
+        std::vector<std::uint32_t> groups;
+        for (const std::size_t i : members)
+            if (std::ranges::find(groups, parts[i].group) == groups.end()) groups.push_back(parts[i].group);
+        return groups;
+    }
+
+    void match_equal() {
+        const Members was = by_names(was_), is = by_names(is_);
+        for (const auto& [names, members] : was) {
+            const auto same = is.find(names);
+            if (same == is.end()) continue;
+            const std::vector<std::uint32_t> before = groups_of(was_, members), now = groups_of(is_, same->second);
+            for (std::size_t k = 0; k < members.size(); ++k) {
+                std::vector<std::uint32_t>& found = found_[members[k]];
+                if (before.size() > 1) {
+                    const auto at = std::ranges::find(before, was_[members[k]].group) - before.begin();
+                    if (static_cast<std::size_t>(at) < now.size()) found = {now[static_cast<std::size_t>(at)]};
+                    continue;
+                }
+                found = now;
+                if (members.size() != same->second.size()) continue;
+                const std::uint32_t own = is_[same->second[k]].group;
+                std::ranges::rotate(found, std::ranges::find(found, own));
+            }
+        }
+        take();
+    }
+
+    /// What is left of both by one name.
+    template <class Was, class Is>
+    void match_rest(Was name_before, Is name_now) {
+        std::map<std::string, std::vector<std::uint32_t>> now;
+        for (const GroupPart& part : is_)
+            if (!taken_[part.group]) now[name_now(part)].push_back(part.group);
+        for (std::size_t i = 0; i < was_.size(); ++i) {
+            const std::string name = name_before(was_[i]);
+            if (const auto same = now.find(name); found_[i].empty() && !name.empty() && same != now.end())
+                found_[i] = same->second;
+        }
+        take();
+    }
+
+    void take() {
+        for (const auto& groups : found_)
+            for (const std::uint32_t group : groups) taken_[group] = true;
+    }
+
+    std::vector<GroupPart> was_, is_;
+    std::vector<std::vector<std::uint32_t>> found_;  ///< by former part
+    std::vector<bool> taken_;                        ///< by revised group
+};
+
+std::string gone_name(std::string name, const std::set<std::string>& today) {
+    while (today.contains(name)) name += " (former)";
+    return name;
+}
+
+bool changes(const NewNames& names) {
+    return std::ranges::any_of(names,
+                               [](const auto& n) { return n.second.size() != 1 || *n.second.begin() != n.first; });
+}
+
+/// Groups of the former model as its parts are called in the revised one, in that one's order, then those that are
+/// gone.
+void regroup(mesh::TriangleMesh& former, const mesh::TriangleMesh& revised, const PartMatch& match,
+             const std::set<std::string>& today) {
+    std::map<std::pair<std::uint32_t, std::string>, std::vector<std::size_t>> members;
+    const std::vector<GroupPart>& parts = match.former();
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const std::vector<std::uint32_t>& groups = match.groups(i);
+        if (groups.empty())
+            members[{kNone, gone_name(former.group_names[parts[i].group], today)}].push_back(i);
+        else
+            members[{groups.front(), revised.group_names[groups.front()]}].push_back(i);
+    }
+    std::map<IndexPair, std::uint32_t> group_of;
+    std::vector<std::string> names;
+    std::vector<mesh::Material> materials;
+    for (const auto& [name, all] : members) {
+        for (const std::size_t i : all)
+            group_of[{parts[i].part, parts[i].group}] = static_cast<std::uint32_t>(names.size());
+        names.push_back(name.second);
+        if (former.materials.size() == former.group_names.size())
+            materials.push_back(former.materials[parts[all.front()].group]);
+    }
+    const bool known = has_parts(former);
+    for (std::size_t t = 0; t < former.n_triangles(); ++t) {
+        std::uint32_t& group = former.triangle_groups[t];
+        group = group_of.at({known ? mesh::part_of(former, t) : group, group});
+    }
+    former.group_names = std::move(names);
+    former.materials = std::move(materials);
+}
+
+NewNames match_names(mesh::TriangleMesh& former, const mesh::TriangleMesh& revised,
+                     const std::set<std::string>& today) {
+    const PartMatch match(former, revised);
+    NewNames names;
+    for (std::size_t i = 0; i < match.former().size(); ++i) {
+        std::set<std::string>& now = names[former.group_names[match.former()[i].group]];
+        for (const std::uint32_t group : match.groups(i)) now.insert(revised.group_names[group]);
+    }
+    for (auto& [name, now] : names)
+        if (now.empty()) now.insert(gone_name(name, today));
+    if (changes(names)) regroup(former, revised, match, today);
+    return names;
+}
+
+/// For a revised file without a scene.
+NewNames names_of_file(mesh::TriangleMesh& former, const std::set<std::string>& today) {
+    const bool all_there =
+        std::ranges::all_of(former.group_names, [&](const std::string& name) { return today.contains(name); });
+    if (all_there || former.triangle_groups.empty()) return {};
+    const std::vector<std::uint32_t> groups = former.triangle_groups;
+    const std::vector<std::string> were = former.group_names;
+    former = mesh::with_part_groups(std::move(former));
+    NewNames names;
+    for (const auto& [was, is] :
+         pairs_of(former, [&](std::size_t t) { return IndexPair(groups[t], former.triangle_groups[t]); }))
+        names[were[was]].insert(former.group_names[is]);
+    return names;
+}
+
+void rename(PartEdit& edit, const NewNames& names) {
+    std::map<std::string, Part> parts;  // the last word on a part counts
+    for (const Part& part : edit.parts) {
+        const auto known = names.find(part.name);
+        if (known == names.end()) {
+            parts[part.name] = part;
+            continue;
+        }
+        for (const std::string& name : known->second) {
+            parts[name] = part;
+            parts[name].name = name;
+        }
+    }
+    edit.parts.clear();
+    for (auto& [name, part] : parts) edit.parts.push_back(std::move(part));
+}
+
+/// Returns whether the mask has a group of today.
+bool rename(std::vector<std::string>& groups, const NewNames& names, const std::set<std::string>& today) {
+    std::vector<std::string> all, there;
+    for (const std::string& name : groups) {
+        const auto known = names.find(name);
+        const std::set<std::string> now = known == names.end() ? std::set{name} : known->second;
+        for (const std::string& to : now) {
+            if (std::ranges::find(all, to) != all.end()) continue;
+            all.push_back(to);
+            if (today.contains(to)) there.push_back(to);
+        }
+    }
+    const bool found = !there.empty();
+    groups = std::move(found ? there : all);
+    return found;
+}
+
+}  // namespace
+
+NamedEntries follow_names(std::vector<JournalEntry> entries, mesh::TriangleMesh& former,
+                          const mesh::TriangleMesh& revised) {
+    const std::set<std::string> today(revised.group_names.begin(), revised.group_names.end());
+    const NewNames names = has_parts(revised) ? match_names(former, revised, today) : names_of_file(former, today);
+    const bool renames = changes(names);
+    NamedEntries out{.entries = std::move(entries), .notes = {}};
+    for (JournalEntry& entry : out.entries) {
+        if (PartEdit* edit = entry.as<PartEdit>(); edit && renames) rename(*edit, names);
+        MaskEdit* edit = entry.as<MaskEdit>();
+        if (!edit || edit->remove || edit->mask.kind != MaskKind::group) continue;
+        if (!rename(edit->mask.groups, names, today))
+            out.notes.push_back(Message("the mask '{}' covers nothing: its parts are gone", edit->mask.name));
+    }
+    return out;
+}
+
+}  // namespace tuft::stroke
