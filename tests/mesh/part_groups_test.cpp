@@ -29,7 +29,7 @@ TEST(PartGroups, HaveNamesThatEntriesMayHave) {
                              .node = node,
                              .own_material = material});
     const PartGroups groups = group_parts(parts);
-    // 195 bytes and " / " are 198: no whole character of the material is left; " 2" takes one of the object, too.
+    // 195 bytes and " / " are 198: the first character of the material takes three.
     EXPECT_THAT(groups.names,
                 ElementsAre(long_name + " / ", long_name + " /  2", long_name + " /  3", long_name + " /  4"));
     for (const std::string& name : groups.names) EXPECT_LE(name.size(), kMaxPartNameBytes);
