@@ -18,6 +18,7 @@ constexpr double kWidestClosing = 3;  // of `join`: with hardly a bleed nothing 
 // Of the bleed, within bounds in metres: radius of the inner corners of a cut line. Film tears from sharper ones, and
 // the points between two arcs that meet fold over.
 constexpr double kInnerCorner = 0.5, kLeastCorner = 1e-3, kMostCorner = 5e-3;
+constexpr double kApart = 5e-4;   // metres between two pieces that a rounded corner keeps free, as far as it can
 constexpr double kLeastHole = 3;  // of the bleed, or half of `join`: smaller holes are a nuisance to cut and lay
 
 /// Cells between the rim of the grid and the first row. A regular mesh then has no edge along a row, whose samples
@@ -179,7 +180,7 @@ Region round_inner_corners(const Region& film, double bleed, double have) {
     for (std::size_t i = 0; i < parts.size(); ++i) {
         Region closed = offset(offset(parts[i], radius), -radius);
         for (std::size_t k = 0; k < parts.size(); ++k)
-            if (k != i && overlap(boxes[i], boxes[k])) closed = subtract(closed, parts[k]);
+            if (k != i && overlap(boxes[i], boxes[k])) closed = subtract(closed, offset(parts[k], kApart));
         closed = unite(closed, parts[i]);
         out.insert(out.end(), closed.begin(), closed.end());
     }

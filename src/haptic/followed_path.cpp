@@ -43,6 +43,8 @@ std::vector<TimedPlace> mean_places(const std::vector<RecordedPeriod>& periods) 
     return places;
 }
 
+constexpr std::size_t kLongestRow = 1000, kMostPlaces = 1 << 24;
+
 std::vector<TimedPlace> read_places(std::ifstream& in, const std::string& file, bool turned) {
     const std::string_view columns = turned ? kTurned : kPlaces;
     std::vector<TimedPlace> places;
@@ -50,6 +52,8 @@ std::vector<TimedPlace> read_places(std::ifstream& in, const std::string& file, 
     for (long number = 2; std::getline(in, line); ++number) {
         std::array<double, 8> v{};
         const auto fail = [&](const Message& what) { throw Error(file, number, what); };
+        if (line.size() > kLongestRow) fail("this line is too long for a recording");
+        if (places.size() == kMostPlaces) fail("a recording of more than four hours");
         if (!read_row(line, std::span(v).first(turned ? 8 : 4))) fail(Message("expected {}", std::string(columns)));
         TimedPlace p{.time = v[0], .position = {v[1], v[2], v[3]}};
         if (turned) p.rotation = {v[4], v[5], v[6], v[7]};

@@ -64,7 +64,7 @@ void highlight_strokes(PaintContext& context, const HighlightStrokes& command, c
         for (const stroke::JournalEntry& s : context.work.document->journal().entries()) {
             const bool paints = s.as<stroke::PaintStroke>() || s.as<stroke::Fill>();
             if (s.as<stroke::MaskEdit>() || s.as<stroke::PartEdit>())
-                blank.paint(s);
+                blank.replay({s});
             else if (paints && wanted.contains(s.id) && !stroke::on_palette(s)) {
                 blank.paint(alone(s), go_on);
                 add_inked(marks, blank.layers().canvas());

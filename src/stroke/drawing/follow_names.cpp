@@ -60,7 +60,8 @@ std::vector<GroupPart> group_parts_of(const mesh::TriangleMesh& mesh) {
 class PartMatch {
   public:
     PartMatch(const mesh::TriangleMesh& former, const mesh::TriangleMesh& revised)
-        : was_(group_parts_of(former)),
+        : known_(has_parts(former)),
+          was_(group_parts_of(former)),
           is_(group_parts_of(revised)),
           found_(was_.size()),
           taken_(revised.group_names.size(), false) {
@@ -116,16 +117,22 @@ class PartMatch {
         take();
     }
 
-    /// What is left of both by one name.
+    /// What is left of both by one name. Of files with parts, only where one group is left on either side: a deleted
+    /// screw is not every new part of steel.
     template <class Was, class Is>
     void match_rest(Was name_before, Is name_now) {
+        std::map<std::string, std::set<std::uint32_t>> left;
         std::map<std::string, std::vector<std::uint32_t>> now;
+        for (std::size_t i = 0; i < was_.size(); ++i)
+            if (found_[i].empty()) left[name_before(was_[i])].insert(was_[i].group);
         for (const GroupPart& part : is_)
             if (!taken_[part.group]) now[name_now(part)].push_back(part.group);
         for (std::size_t i = 0; i < was_.size(); ++i) {
             const std::string name = name_before(was_[i]);
-            if (const auto same = now.find(name); found_[i].empty() && !name.empty() && same != now.end())
-                found_[i] = same->second;
+            const auto same = now.find(name);
+            if (!found_[i].empty() || name.empty() || same == now.end()) continue;
+            const bool one = left[name].size() == 1 && std::set(same->second.begin(), same->second.end()).size() == 1;
+            if (one || !known_) found_[i] = same->second;
         }
         take();
     }
@@ -135,6 +142,7 @@ class PartMatch {
             for (const std::uint32_t group : groups) taken_[group] = true;
     }
 
+    bool known_;  ///< the former file has parts
     std::vector<GroupPart> was_, is_;
     std::vector<std::vector<std::uint32_t>> found_;  ///< by former part
     std::vector<bool> taken_;                        ///< by revised group
