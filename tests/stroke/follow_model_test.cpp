@@ -10,6 +10,7 @@
 #include "core/random.h"
 #include "core/text/units.h"
 #include "ink/canvas/canvas.h"
+#include "ink_centre.h"
 #include "mesh/part_groups.h"
 #include "sheet.h"
 #include "stroke/drawing/drawing.h"
@@ -280,22 +281,6 @@ Model model_of(const mesh::TriangleMesh& m) {
     return prepare_model(soup, options);
 }
 
-/// Centroid of the ink that an entry leaves on a model.
-Vec3 ink_centre(const Model& model, const JournalEntry& entry) {
-    Document painting(model);
-    painting.paint(entry);
-    Vec3 sum(0);
-    double all = 0;
-    const ink::Canvas& canvas = painting.layers().canvas();
-    for (const std::uint32_t slot : canvas.touched_slots())
-        if (const ink::Plane* plane = canvas.plane(slot, 0))
-            for (int t = 0; t < atlas::kTileTexels; ++t) {
-                const double amount = (*plane)[t] * static_cast<double>(model.texels.tiles[slot].area[t]);
-                if (amount > 0) all += amount, sum += amount * Vec3(model.texels.position(slot, t));
-            }
-    return sum / all;
-}
-
 // On another mesh of the same shell, in place, and moved by 20 mm and turned by 10 degrees: found by registration.
 // Chords of the squares, 4 × 2.7 mm, are up to 0.04 mm off the shell and turn its normal by half a degree.
 TEST(FollowModel, DotsStayWithinATenthOfAMillimetreOnARemeshedModel) {
@@ -314,8 +299,8 @@ TEST(FollowModel, DotsStayWithinATenthOfAMillimetreOnARemeshedModel) {
                 dot.rings[0].push_back(2e-3 * Vec2(std::cos(6 * kDegree * i), std::sin(6 * kDegree * i)));
             dot.stops = {{.ink = "carbon"}};
             const std::vector<JournalEntry> made{JournalEntry(fill_of_area(dot))};
-            const Vec3 was = truth(ink_centre(former, made[0])),
-                       is = ink_centre(revised, follow_model(made, change, *former.query)[0]);
+            const Vec3 was = truth(test::ink_centre(former, made[0])),
+                       is = test::ink_centre(revised, follow_model(made, change, *former.query)[0]);
             EXPECT_LT(
                 glm::distance(revised.query->closest_point(was)->position, revised.query->closest_point(is)->position),
                 1e-4)

@@ -15,6 +15,7 @@
 #include "brush/calibration/sweep.h"
 #include "core/ease.h"
 #include "core/text/units.h"
+#include "ink_centre.h"
 #include "sheet.h"
 #include "stroke/drawing/drawing.h"
 #include "stroke/drawing/line_width.h"
@@ -451,18 +452,7 @@ Vec3 place_of_dot(const Model& model, const Vec3& normal, const std::string& bru
     s.trace.placement.mapping = SurfaceMapping::drape;
     for (int i = 0; i <= 20; ++i)
         s.trace.samples.push_back({.time = 0.01 * i, .pressure = pressure * (pressed ? 1 : 1 - std::abs(0.1 * i - 1))});
-    Document painting(model);
-    painting.paint(s);
-    Vec3 sum(0);
-    double all = 0;
-    const ink::Canvas& canvas = painting.layers().canvas();
-    for (const std::uint32_t slot : canvas.touched_slots())
-        if (const ink::Plane* plane = canvas.plane(slot, 0))
-            for (int t = 0; t < atlas::kTileTexels; ++t) {
-                const double amount = (*plane)[t] * static_cast<double>(model.texels.tiles[slot].area[t]);
-                if (amount > 0) all += amount, sum += amount * Vec3(model.texels.position(slot, t));
-            }
-    return sum / all;
+    return test::ink_centre(model, s);
 }
 
 // Pressed down plumb the hair lay 1.5 mm to one side on a plane, and to any side where the surface bends.
