@@ -29,7 +29,8 @@ constexpr double kCountError = 0.5;       // counts between a measured and a tru
 constexpr double kCountedShare = 0.3;     // of a change of force that is counted at once
 constexpr double kMostAcceleration = 60;  // m/s², of a hand
 constexpr double kMostTurning = 500;      // rad/s², of a wrist
-constexpr double kFree = 1e-3;            // N below which a force is none
+constexpr double kFrictionShare = 0.7;  // of the arm's friction: an arm that has worn in has less than its maker states
+constexpr double kFree = 1e-3;          // N below which a force is none
 
 /// `v` no longer than `most`.
 Vec3 limited(const Vec3& v, double most) {
@@ -106,6 +107,12 @@ Acted acted_over(const LawState& s, const Vec3& moved) {
     return acted;
 }
 
+/// f_r, N: what the arm's friction takes back from a force that moves it. Only with restore, which gives the hand more
+/// than it has pressed into the coupling.
+double paid_by_friction(const LawOptions& options) {
+    return options.restore ? kFrictionShare * options.limits.friction : 0;
+}
+
 /// Step 6 before the force of this period: what the last ones have given.
 void settle_tank(const LawOptions& options, LawState& s, const LawInput& in) {
     const double count = options.limits.count * options.scale;
@@ -120,6 +127,7 @@ void settle_tank(const LawOptions& options, LawState& s, const LawInput& in) {
         s.tank.energy -= acted.taken + kCountError * count * glm::length(change);
         s.tank.counted_force += change;
         s.tank.landed += glm::length(moved);
+        s.tank.energy += paid_by_friction(options) * glm::length(moved);
         s.tank.played = in.arm;
         s.tank.acted = {};
         s.tank.n_acted = 0;
@@ -207,9 +215,10 @@ double most_force(const LawOptions& options, const LawState& s, double left, con
     const Vec3 next = expected_motion(s, 1);
     const double kept = left - kReserve * last * std::max(0.0, glm::dot(next, u));
     const double planned = spring_force(tank_stiffness(options), std::max(0.0, kept), path_ahead(options, s, next, u));
-    const double most = std::max(planned, last - following_force(options, s) - kFallFree),
+    const double paid = paid_by_friction(options),
+                 most = std::max(planned + paid, last - following_force(options, s) - kFallFree),
                  ahead = path_ahead(options, s, moved, u);
-    return ahead > 0 ? std::min(most, left / ahead) : most;
+    return ahead > 0 ? std::min(most, left / ahead + paid) : most;
 }
 
 /// Step 6: `f`, no more than the tank lets out. Takes from `left` J what it may need.

@@ -142,6 +142,7 @@ TEST(Trial, RestoreIsPaidForByTheArm) {
             options.law.restore = true;
             const TrialReport r = run_trial(tuft, *f.surface, hand_path(motion, f.place, tuft.preset), options);
             EXPECT_GE(r.least_with_arm, -30 * kMicrojoule) << limits.name << " " << name_of(motion);
+            EXPECT_LE(r.largest_step, allowed_step(limits)) << limits.name << " " << name_of(motion);
         }
 }
 
@@ -338,10 +339,14 @@ TEST(Trial, SteadyForceOfAnUprightPressIsThatOfARodOnAPlane) {
     }
 }
 
-// With the softness of the coupling taken away the hand has what the hair would give where the hand itself is.
+// With the softness of the coupling taken away the hand has what the hair gives that has come the same way and goes on
+// to where the hand itself is. Hair sticks: its force there after the shorter way of the hand alone is up to a sixth
+// less.
 TEST(Trial, WithRestoreAHandAtRestHasTheForceOfTheHairAtTheArm) {
     const brush::Tuft tuft = tuft_of("wolf-medium");
-    for (const auto& [place, device] : {std::pair("bowl", "inverse3"), std::pair("roof", "falcon")}) {
+    for (const auto& [place, device] :
+         {std::pair("sheet", "touch"), std::pair("sheet", "omega.6"), std::pair("bowl", "touch"),
+          std::pair("bowl", "inverse3"), std::pair("roof", "touch"), std::pair("roof", "falcon")}) {
         const TrialModel f = load_trial_model(place);
         const DeviceLimits& limits = device_preset(device);
         TrialOptions options = options_for(limits);
@@ -349,9 +354,13 @@ TEST(Trial, WithRestoreAHandAtRestHasTheForceOfTheHairAtTheArm) {
         const TrialReport r = rest_on(f, tuft, options);
         HairSolver there(tuft, *f.surface);
         HairAnswer answer;
-        for (std::size_t i = 0; i < r.roots.size(); ++i) {
-            RootPose pose = r.roots[i].pose;
-            pose.position = r.arms[i];
+        for (const SolvedPose& p : r.roots) answer = there.solve(p.pose);
+        RootPose pose = r.roots.back().pose;
+        const Vec3 from = pose.position;
+        constexpr int kSteps = 20;
+        for (int i = 1; i <= kSteps; ++i) {
+            pose.position = glm::mix(from, r.arms.back(), double(i) / kSteps);
+            ++pose.tick;
             answer = there.solve(pose);
         }
         const Vec3 hair = options.law.gain * answer.force;
