@@ -35,15 +35,24 @@ TEST(Allocations, AWarmStepMakesNone) {
     const mesh::TriangleMesh flat = shapes::sheet(0.3, 60), edge = shapes::roof(0.5), round = shapes::bowl(0.05);
     const mesh::TriangleMesh* const places[] = {&flat, &edge, &round};
     // A round and a flat brush on all; those of other makes on one in turn.
-    const std::pair<const char*, int> brushes[] = {{"wolf-medium", -1}, {"liner-3", 0},   {"flat-12", -1},
-                                                   {"sword-8", 1},      {"sponge-30", 2}, {"fan-30", 1}};
-    for (const auto& [name, place] : brushes) {
+    struct Case {
+        const char* name;
+        int place;
+        brush::SpineMethod method = brush::SpineMethod::rod;
+    };
+    const Case cases[] = {{"wolf-medium", -1}, {"wolf-medium", 2, brush::SpineMethod::table},
+                          {"liner-3", 0},      {"flat-12", -1},
+                          {"sword-8", 1},      {"sponge-30", 2},
+                          {"fan-30", 1}};
+    for (const auto& [name, place, method] : cases) {
         for (const mesh::TriangleMesh* m : places) {
             if (place >= 0 && m != places[place]) continue;
             const mesh::SurfaceQuery surface(*m);
             const auto foot = surface.closest_point({0, 0, 0.01});
             ASSERT_TRUE(foot);
-            const brush::Tuft rested = brush::make_tuft(brush::load_preset(name));
+            brush::Preset preset = brush::load_preset(name);
+            preset.spine = method;
+            const brush::Tuft rested = brush::make_tuft(preset);
             brush::Tuft tuft = rested;
             allocations_of_a_stroke(tuft, surface, foot->position);
             tuft = rested;

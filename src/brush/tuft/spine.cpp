@@ -329,11 +329,8 @@ Solved bend_by_table(const SpineStep& step, const QueryTable& table, Spine& spin
         return finish_spine(step, spine, {std::move(r), m.node, obstacles});
     }
     const rod::Obstacle& o = obstacles.back();
-    const double root = glm::dot(clamp.position - o.origin, o.normal);
-    const double moment = touching_moment(table, [&](const TableRow& row) {
-        const Vec2 tip = row.nodes.front() / p.length;
-        return root + tip.x * glm::dot(clamp.tangent, o.normal) + tip.y * glm::dot(side, o.normal);
-    });
+    const double root = glm::dot(clamp.position - o.origin, o.normal) * p.length;
+    const double moment = touching_moment(table, root, {glm::dot(clamp.tangent, o.normal), glm::dot(side, o.normal)});
     const TableRow row = look_up(table, moment);
     take_shape(row, side);
     if (moment > 0) {

@@ -128,23 +128,46 @@ struct BetweenRows {
     }
 };
 
+/// The rows round a moment, and the place of it between the inner two.
+struct RowsAround {
+    const TableRow &before, &lo, &hi, &after;
+    BetweenRows place;
+
+    RowsAround(const std::vector<TableRow>& rows, std::size_t k, double t)
+        : before(rows[k == 0 ? 0 : k - 1]),
+          lo(rows[k]),
+          hi(rows[k + 1]),
+          after(rows[std::min(k + 2, rows.size() - 1)]),
+          place{t, k == 0, k + 2 == rows.size()} {}
+
+    template <class F>
+    auto cubic(const F& of) const {
+        return place.cubic(of(before), of(lo), of(hi), of(after));
+    }
+};
+
+RowsAround rows_around(const QueryTable& table, double moment) {
+    const std::size_t n = table.rows.size();
+    const double at = std::clamp(moment / table.rows.back().moment, 0.0, 1.0) * static_cast<double>(n - 1);
+    const std::size_t k = std::min(static_cast<std::size_t>(at), n - 2);
+    return {table.rows, k, at - static_cast<double>(k)};
+}
+
 }  // namespace
 
 TableRow look_up(const QueryTable& table, double moment) {
-    const std::vector<TableRow>& rows = table.rows;
-    const double last = rows.back().moment;
-    const double at = std::clamp(moment / last, 0.0, 1.0) * static_cast<double>(rows.size() - 1);
-    const std::size_t k = std::min(static_cast<std::size_t>(at), rows.size() - 2);
-    const BetweenRows place{at - static_cast<double>(k), k == 0, k + 2 == rows.size()};
-    const TableRow &r0 = rows[place.first ? k : k - 1], &r1 = rows[k], &r2 = rows[k + 1],
-                   &r3 = rows[place.last ? k + 1 : k + 2];
+    const RowsAround rows = rows_around(table, moment);
+    const std::size_t n = rows.lo.nodes.size();
     TableRow out;
-    out.moment = place.cubic(r0.moment, r1.moment, r2.moment, r3.moment);
-    out.load = place.cubic(r0.load, r1.load, r2.load, r3.load);
-    for (std::size_t i = 0; i < r1.nodes.size(); ++i) {
-        out.nodes.push_back(place.cubic(r0.nodes[i], r1.nodes[i], r2.nodes[i], r3.nodes[i]));
-        out.angles.push_back(place.cubic(r0.angles[i], r1.angles[i], r2.angles[i], r3.angles[i]));
-        out.moments.push_back(place.cubic(r0.moments[i], r1.moments[i], r2.moments[i], r3.moments[i]));
+    out.moment = rows.cubic([](const TableRow& r) { return r.moment; });
+    out.load = rows.cubic([](const TableRow& r) { return r.load; });
+    out.nodes.resize(n);
+    out.angles.resize(n);
+    out.moments.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        out.nodes[i] = rows.cubic([i](const TableRow& r) { return r.nodes[i]; });
+        out.angles[i] = rows.cubic([i](const TableRow& r) { return r.angles[i]; });
+        out.moments[i] = rows.cubic([i](const TableRow& r) { return r.moments[i]; });
     }
     return out;
 }
@@ -182,23 +205,21 @@ FixedShape fixed_shape(const QueryTable& table, double moment, double root_heigh
 FixedShape fixed_shape_at_angle(const QueryTable& table, double root_height, double holder_angle, double mu,
                                 double lambda) {
     // The tip's height rises with the moment; the first row that lifts it to the plane counts.
-    const auto height = [&](const TableRow& row) {
-        const Vec2& tip = row.nodes.front();
-        return root_height - tip.x * std::sin(holder_angle) + tip.y * std::cos(holder_angle);
-    };
-    const double moment = touching_moment(table, height);
+    const double moment = touching_moment(table, root_height, {-std::sin(holder_angle), std::cos(holder_angle)});
     return stand(table, look_up(table, moment), root_height, holder_angle, mu, lambda);
 }
 
-double touching_moment(const QueryTable& table, const std::function<double(const TableRow&)>& tip_height) {
-    if (tip_height(table.rows.front()) >= 0) return 0;
+double touching_moment(const QueryTable& table, double root_height, const Vec2& up) {
+    const auto height = [&](const Vec2& tip) { return root_height + glm::dot(tip, up); };
+    if (height(table.rows.front().nodes.front()) >= 0) return 0;
     std::size_t k = 1;
-    while (k < table.rows.size() && tip_height(table.rows[k]) < 0) ++k;
+    while (k < table.rows.size() && height(table.rows[k].nodes.front()) < 0) ++k;
     if (k == table.rows.size()) return table.rows.back().moment;
     double lo = table.rows[k - 1].moment, hi = table.rows[k].moment;
     for (int i = 0; i < 40; ++i) {
         const double middle = 0.5 * (lo + hi);
-        (tip_height(look_up(table, middle)) < 0 ? lo : hi) = middle;
+        const Vec2 tip = rows_around(table, middle).cubic([](const TableRow& r) { return r.nodes.front(); });
+        (height(tip) < 0 ? lo : hi) = middle;
     }
     return 0.5 * (lo + hi);
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "brush/preset/preset.h"
@@ -16,11 +15,11 @@ namespace tuft::brush {
 /// One entry, holder frame: x along the axis from the root, y to the bend side; metres.
 /// Nodes go from tip (0) to root (n).
 struct TableRow {
-    double moment = 0;            ///< M at the root, N·m
-    double load = 0;              ///< P, N
-    std::vector<Vec2> nodes;      ///< P_ib
-    std::vector<double> angles;   ///< θ_ib, radians from the axis
-    std::vector<double> moments;  ///< m_i, N·m
+    double moment = 0;         ///< M at the root, N·m
+    double load = 0;           ///< P, N
+    Recycled<Vec2> nodes;      ///< P_ib
+    Recycled<double> angles;   ///< θ_ib, radians from the axis
+    Recycled<double> moments;  ///< m_i, N·m
 };
 
 /// Shapes of one tuft, by root moment.
@@ -36,8 +35,9 @@ QueryTable make_table(const Preset& preset, int rows = 64);
 /// Returns the shape at a moment, clamped to the table's range; cubic between rows.
 TableRow look_up(const QueryTable& table, double moment);
 
-/// Returns the smallest moment whose shape has `tip_height` >= 0. Returns the table's largest moment when none has.
-double touching_moment(const QueryTable& table, const std::function<double(const TableRow&)>& tip_height);
+/// Returns the smallest moment that lifts the tip to the surface, height of the root + `up` · tip >= 0, where `up` is
+/// the surface's normal in the holder frame. Returns the table's largest moment when none does.
+double touching_moment(const QueryTable& table, double root_height, const Vec2& up);
 
 /// Shape of the tuft on a plane. Lengths in metres, angles in radians.
 struct FixedShape {
