@@ -28,7 +28,8 @@ TEST_F(Device, ListsTheKnownArms) {
 TEST_F(Device, WrongArgumentsAreOneLine) {
     for (const char* arguments :
          {"device", "device fly", "device list --preset omega", "device test --simulate wand", "device record",
-          "device simulate --motion jump", "device test --port 1 --seconds 1", "device simulate --brush nosuch"}) {
+          "device simulate --motion jump", "device test --port 1 --seconds 1", "device simulate --brush nosuch",
+          "device test --simulate touch --spine table --brush flat-12"}) {
         const test::Ran ran = tuft(arguments);
         EXPECT_TRUE(ran.status == 1 || ran.status == 2) << arguments;
         EXPECT_EQ(ran.error_lines(), 1) << arguments << ran.err;
@@ -39,15 +40,18 @@ TEST_F(Device, WrongArgumentsAreOneLine) {
 }
 
 TEST_F(Device, TestPrintsTheFiguresOfASimulatedArm) {
-    const test::Ran ran = tuft("device test --simulate inverse3 --model sheet --seconds 1 --json --quiet");
-    ASSERT_EQ(ran.status, 0) << ran.err;
-    const nlohmann::json out = nlohmann::json::parse(ran.out);
-    for (const char* key : {"least_energy_uj", "late_percent", "worst_cycle_ms", "largest_step_n", "allocations",
-                            "late_solves_percent", "stop_ms"})
-        EXPECT_TRUE(out[key].is_number()) << key;
-    EXPECT_GE(out["least_energy_uj"], -1);
-    EXPECT_TRUE(out["complete"]);
-    EXPECT_EQ(out["allocations"], 0);
+    for (const std::string spine : {"rod", "table"}) {
+        const test::Ran ran =
+            tuft("device test --simulate inverse3 --model sheet --seconds 1 --json --quiet --spine " + spine);
+        ASSERT_EQ(ran.status, 0) << ran.err;
+        const nlohmann::json out = nlohmann::json::parse(ran.out);
+        for (const char* key : {"least_energy_uj", "late_percent", "worst_cycle_ms", "largest_step_n", "allocations",
+                                "late_solves_percent", "stop_ms"})
+            EXPECT_TRUE(out[key].is_number()) << key;
+        EXPECT_GE(out["least_energy_uj"], -1) << spine;
+        EXPECT_TRUE(out["complete"]);
+        EXPECT_EQ(out["allocations"], 0) << spine;
+    }
 }
 
 /// Shell text that does `stop` to the background process once it is amid its trials, and waits for it. Preparing the

@@ -363,6 +363,7 @@ struct DeviceWork {
     ArmAdded added;
     double seconds = 10;
     std::string brush = "wolf-medium";
+    std::string spine = "rod";    ///< how the tuft bends; rod: as the brush says
     std::filesystem::path model;  ///< empty: the shipped bowl
     bool restore = false;         ///< the coupling's softness is taken away at rest
     std::filesystem::path output;

@@ -77,7 +77,7 @@ int simulate_device(const DeviceWork& a) {
     const ContactModel model = load_contact_model(a.model);
     const haptic::TrialPlace place = haptic::place_above(*model.surface, "");
     haptic::SimulatedArm arm(haptic::device_preset(a.arm.preset),
-                             hand_of(a, motion_named(a.simulation.motion), place, brush::load_preset(a.brush)),
+                             hand_of(a, motion_named(a.simulation.motion), place, brush_in_hand(a, a.brush)),
                              {.delay = 1e-3 * a.simulation.delay_ms, .jitter = jitter_of(a)});
     haptic::serve_simulated(
         std::move(arm),
@@ -92,7 +92,7 @@ int simulate_device(const DeviceWork& a) {
 
 std::vector<haptic::RecordedPeriod> live_recording(const DeviceWork& a, const ContactModel& model,
                                                    const haptic::TrialPlace& place, const haptic::LawOptions& law) {
-    const brush::Preset preset = brush::load_preset(a.brush);
+    const brush::Preset preset = brush_in_hand(a, a.brush);
     haptic::DeviceState state;
     const haptic::HandPath path = hand_of(a, motion_named(a.simulation.motion), place, preset);
     const std::unique_ptr<haptic::Device> device = open_device(a, path, state);
@@ -123,7 +123,7 @@ int record_device(const DeviceWork& a) {
     check_output(a.output);
     const ContactModel model = load_contact_model(a.model);
     const haptic::TrialPlace place = haptic::place_above(*model.surface, "");
-    const brush::Preset preset = brush::load_preset(a.brush);
+    const brush::Preset preset = brush_in_hand(a, a.brush);
     const haptic::LawOptions law{
         .limits = haptic::device_preset(a.arm.simulate.empty() ? a.arm.preset : a.arm.simulate),
         .gain = preset.force_gain,
@@ -174,6 +174,15 @@ haptic::HandPath hand_of(const DeviceWork& a, haptic::HandMotion motion, const h
                          const brush::Preset& preset) {
     if (!a.simulation.follow.empty()) return haptic::followed_path(haptic::read_followed_path(a.simulation.follow));
     return haptic::hand_path(motion, place, preset);
+}
+
+brush::Preset brush_in_hand(const DeviceWork& a, const std::string& name) {
+    brush::Preset preset = brush::load_preset(name);
+    if (a.spine == "table") {
+        preset.spine = brush::SpineMethod::table;
+        brush::check_preset(preset, name);
+    }
+    return preset;
 }
 
 double jitter_of(const DeviceWork& a) {

@@ -25,6 +25,9 @@ haptic::HandPath hand_of(const DeviceWork& arguments, haptic::HandMotion motion,
 /// Throws `UsageError` for an unknown name.
 haptic::HandMotion motion_named(const std::string& name);
 
+/// The brush `name` in the hand, bent as `--spine` says.
+brush::Preset brush_in_hand(const DeviceWork& arguments, const std::string& name);
+
 /// s, of a force on its way besides the delay.
 double jitter_of(const DeviceWork& arguments);
 haptic::SolverOptions solver_options(const DeviceWork& arguments, const brush::Preset& preset);

@@ -19,7 +19,7 @@ namespace {
 
 using namespace std::chrono_literals;
 int slowest_stop(const DeviceWork& a, const Places& places) {
-    const brush::Tuft tuft = brush::make_tuft(brush::load_preset(a.brush));
+    const brush::Tuft tuft = brush::make_tuft(brush_in_hand(a, a.brush));
     const auto path = haptic::hand_path(haptic::HandMotion::rest, places.place[0], tuft.preset);
     int slowest = 0;
     for (const haptic::Trouble trouble : haptic::kTroubles) {
@@ -33,7 +33,7 @@ int slowest_stop(const DeviceWork& a, const Places& places) {
 
 /// The loop by the wall clock; with a real arm in the air, far from the model.
 haptic::LoopStatus run_loop(const DeviceWork& a, const Places& places) {
-    const brush::Preset preset = brush::load_preset(a.brush);
+    const brush::Preset preset = brush_in_hand(a, a.brush);
     const haptic::HandPath path = haptic::hand_path(haptic::HandMotion::circles, places.place[0], preset);
     haptic::DeviceState state;
     const std::unique_ptr<haptic::Device> device = open_device(a, path, state);

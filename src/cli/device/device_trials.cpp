@@ -98,7 +98,7 @@ std::string where_of(const std::string& brush, const haptic::TrialPlace& place, 
 std::vector<brush::Tuft> tufts_of(const DeviceWork& a) {
     std::vector<brush::Tuft> tufts;
     for (const std::string& name : a.trial.all_brushes ? brush::list_presets() : std::vector{a.brush})
-        tufts.push_back(brush::make_tuft(brush::load_preset(name)));
+        tufts.push_back(brush::make_tuft(brush_in_hand(a, name)));
     return tufts;
 }
 
@@ -140,7 +140,7 @@ void try_hands(const DeviceWork& a, const Places& places, Console& console, Tria
 }
 
 void try_hours(const DeviceWork& a, const Places& places, Console& console, Trials& trials) {
-    const brush::Tuft tuft = brush::make_tuft(brush::load_preset(a.brush));
+    const brush::Tuft tuft = brush::make_tuft(brush_in_hand(a, a.brush));
     constexpr double kPart = 60;  // s of one motion
     const TrialFn trial = [&](std::size_t part) {
         TrialOptions options = trial_options(a, tuft.preset);
