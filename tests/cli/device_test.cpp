@@ -13,6 +13,8 @@
 namespace tuft {
 namespace {
 
+using namespace std::string_literals;
+
 using Device = test::Program;
 
 TEST_F(Device, ListsTheKnownArms) {
@@ -121,6 +123,22 @@ TEST_F(Device, SimulateServesAnArmThatListAndRecordFind) {
     ran = tuft("device record --preset omega.6 --seconds 1 -o '" + path("a.csv") + "' --json" + port);
     ASSERT_EQ(ran.status, 0) << ran.err;
     EXPECT_GT(nlohmann::json::parse(ran.out)["periods"], 100);
+}
+
+// What was felt until then is kept, and one line says what has failed.
+TEST_F(Device, AServerThatDiesEndsARecordingWithWhatThereIs) {
+    for (const char* fault : {"dies", "nan"}) {
+        const Served server(
+            tuft_program(),
+            "device simulate --preset omega.6 --model sheet --port 0 --fault-after 1 --fault "s + fault);
+        ASSERT_GT(server.port, 0);
+        const test::Ran ran = tuft("device record --preset omega.6 --model sheet --seconds 60 -o '" + path("a.csv") +
+                                   "' --port " + std::to_string(server.port));
+        EXPECT_EQ(ran.status, 1) << fault;
+        EXPECT_EQ(ran.error_lines(), 1) << fault << ran.err;
+        EXPECT_NE(ran.err.find("the arm"), std::string::npos) << ran.err;
+        EXPECT_GT(read(path("a.csv")).size(), 1000u) << fault;
+    }
 }
 
 TEST_F(Device, TheSampleBridgeSpeaksTheProtocol) {

@@ -91,7 +91,8 @@ int simulate_device(const DeviceWork& a) {
 }
 
 std::vector<haptic::RecordedPeriod> live_recording(const DeviceWork& a, const ContactModel& model,
-                                                   const haptic::TrialPlace& place, const haptic::LawOptions& law) {
+                                                   const haptic::TrialPlace& place, const haptic::LawOptions& law,
+                                                   haptic::Fault& fault) {
     const brush::Preset preset = brush_in_hand(a, a.brush);
     haptic::DeviceState state;
     const haptic::HandPath path = hand_of(a, motion_named(a.simulation.motion), place, preset);
@@ -102,10 +103,7 @@ std::vector<haptic::RecordedPeriod> live_recording(const DeviceWork& a, const Co
     const Vec3 above = place.frame.origin + (preset.length + 0.01) * place.frame.n;
     if (a.arm.simulate.empty()) control.workspace = workspace_at(state, above);
     loop.set_control(control);
-    loop.start();
-    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(a.seconds);
-    while (std::chrono::steady_clock::now() < end && !interrupted()) std::this_thread::sleep_for(kLook);
-    loop.stop();
+    fault = run_for(loop, a.seconds);
     return loop.take_recording();
 }
 
@@ -129,8 +127,9 @@ int record_device(const DeviceWork& a) {
         .gain = preset.force_gain,
         .restore = a.restore};
     const bool replays = !a.replay.empty();
+    haptic::Fault fault = haptic::Fault::none;
     std::vector<haptic::RecordedPeriod> periods =
-        replays ? haptic::read_recording(a.replay) : live_recording(a, model, place, law);
+        replays ? haptic::read_recording(a.replay) : live_recording(a, model, place, law, fault);
     const Vec3 above = place.frame.origin + (preset.length + 0.01) * place.frame.n;
     std::size_t different = 0;
     double greatest = 0;
@@ -154,6 +153,7 @@ int record_device(const DeviceWork& a) {
     else
         fmt::print("wrote {}: {} periods, up to {:.2f} N{}\n", a.output.string(), periods.size(), greatest,
                    replays ? fmt::format("; {} other than recorded", different) : "");
+    if (fault != haptic::Fault::none) throw Error(haptic::describe(fault));
     return 0;
 }
 
@@ -174,6 +174,29 @@ haptic::HandPath hand_of(const DeviceWork& a, haptic::HandMotion motion, const h
                          const brush::Preset& preset) {
     if (!a.simulation.follow.empty()) return haptic::followed_path(haptic::read_followed_path(a.simulation.follow));
     return haptic::hand_path(motion, place, preset);
+}
+
+haptic::Fault run_for(haptic::Loop& loop, double seconds) {
+    using Clock = std::chrono::steady_clock;
+    constexpr auto kPatience = 500ms;
+    loop.start();
+    const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+    auto well = Clock::now();
+    haptic::Fault fault = haptic::Fault::none;
+    haptic::SolvedPose pose;
+    for (auto now = well; now < end && !interrupted(); now = Clock::now()) {
+        while (loop.pop(pose)) {
+        }
+        const haptic::Fault seen = loop.status().fault;
+        if (seen == haptic::Fault::none) well = now;
+        if (now - well > kPatience) {
+            fault = seen;
+            break;
+        }
+        std::this_thread::sleep_for(kLook);
+    }
+    loop.stop();
+    return fault;
 }
 
 brush::Preset brush_in_hand(const DeviceWork& a, const std::string& name) {

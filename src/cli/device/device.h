@@ -5,6 +5,7 @@
 
 #include "cli/arguments/arguments.h"
 #include "haptic/device/device.h"
+#include "haptic/loop.h"
 #include "haptic/trial.h"
 
 /// \file
@@ -36,6 +37,10 @@ haptic::SolverOptions solver_options(const DeviceWork& arguments, const brush::P
 /// no service answers within 3 s.
 std::unique_ptr<haptic::Device> open_device(const DeviceWork& arguments, const haptic::HandPath& path,
                                             haptic::DeviceState& state);
+
+/// Runs the loop for `seconds`, or until the arm has failed for half a second. Returns that fault,
+/// or none.
+haptic::Fault run_for(haptic::Loop& loop, double seconds);
 
 /// Returns the workspace in which the arm at `state` has the tuft's root at `root`.
 haptic::Workspace workspace_at(const haptic::DeviceState& state, const Vec3& root);

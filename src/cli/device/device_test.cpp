@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "brush/preset/preset.h"
 #include "cli/device/device_trials.h"
@@ -17,7 +15,6 @@
 namespace tuft::cli {
 namespace {
 
-using namespace std::chrono_literals;
 int slowest_stop(const DeviceWork& a, const Places& places) {
     const brush::Tuft tuft = brush::make_tuft(brush_in_hand(a, a.brush));
     const auto path = haptic::hand_path(haptic::HandMotion::rest, places.place[0], tuft.preset);
@@ -32,7 +29,7 @@ int slowest_stop(const DeviceWork& a, const Places& places) {
 }
 
 /// The loop by the wall clock; with a real arm in the air, far from the model.
-haptic::LoopStatus run_loop(const DeviceWork& a, const Places& places) {
+haptic::LoopStatus run_loop(const DeviceWork& a, const Places& places, haptic::Fault& fault) {
     const brush::Preset preset = brush_in_hand(a, a.brush);
     const haptic::HandPath path = haptic::hand_path(haptic::HandMotion::circles, places.place[0], preset);
     haptic::DeviceState state;
@@ -47,15 +44,7 @@ haptic::LoopStatus run_loop(const DeviceWork& a, const Places& places) {
         control.workspace = workspace_at(state, f.origin + 1.0 * f.n);
     }
     loop.set_control(control);
-    loop.start();
-    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(a.seconds);
-    haptic::SolvedPose pose;
-    while (std::chrono::steady_clock::now() < end && !interrupted()) {
-        while (loop.pop(pose)) {
-        }
-        std::this_thread::sleep_for(20ms);
-    }
-    loop.stop();
+    fault = run_for(loop, a.seconds);
     check_interrupt();
     return loop.status();
 }
@@ -114,6 +103,7 @@ int test_device(const DeviceWork& a) {
     nlohmann::json out;
     const LastWords figures;
     haptic::LoopStatus loop;
+    haptic::Fault fault = haptic::Fault::none;
     try {
         if (!a.arm.simulate.empty()) {
             haptic::device_preset(a.arm.simulate);
@@ -122,7 +112,7 @@ int test_device(const DeviceWork& a) {
             if (!trials.complete) throw Cancelled();
             out["stop_ms"] = slowest_stop(a, places);
         }
-        loop = run_loop(a, places);
+        loop = run_loop(a, places, fault);
     } catch (const Cancelled&) {  // what there is, is printed
         console.clear();
         if (!out.empty()) print(out, a.common.json);
@@ -140,6 +130,7 @@ int test_device(const DeviceWork& a) {
     if (!loop.realtime)
         console.note("the system allows no real-time priority: cycles will be late (ulimit -r, or CAP_SYS_NICE)");
     print(out, a.common.json);
+    if (fault != haptic::Fault::none) throw Error(haptic::describe(fault));
     return 0;
 }
 
