@@ -27,7 +27,7 @@ namespace tuft::app {
 namespace {
 
 // All by the mouse, in a window high enough for the whole column of tools.
-TEST_F(StudioProgram, LayersAreCopiedBlendedRenamedAndMergedInTheirList) {
+TEST_F(StudioProgram, LayersAreCopiedBlendedRenamedMergedAndDraggedInTheirList) {
     const Ran ran =
         studio(kBowl +
                    "stroke 46%,58% 50%,61% 54%,58%\nclick \"Add a layer\"\nwait-ready\nset layer \"Layer 2\"\nset ink "
@@ -37,13 +37,15 @@ TEST_F(StudioProgram, LayersAreCopiedBlendedRenamedAndMergedInTheirList) {
                    "Duplicate\nwait-ready\nexpect label \"layer Layer 2 copy\"\n"
                    "click Multiply\nwait-ready\n"
                    "key f2\nwait 0.1\ntype gold\nkey enter\nwait-ready\nexpect label \"layer gold\"\n"
-                   "click \"layer Layer 2\"\nwait 0.1\nclick \"Merge down\"\nwait-ready\nsave work.tuft\nwait-ready\n",
+                   "click \"layer Layer 2\"\nwait 0.1\nclick \"Merge down\"\nwait-ready\n"
+                   "move \"layer gold\"\npress\nwait 0.1\nmove \"layer Layer 1\"\nwait 0.1\nrelease\nwait-ready\n"
+                   "save work.tuft\nwait-ready\n",
                "--headless --size 1280x1500");
     ASSERT_EQ(ran.status, 0) << ran.err;
     const nlohmann::json project = tuft("inspect '" + path("work.tuft") + "' --json");
     ASSERT_EQ(project["layers"].size(), 2u);
-    EXPECT_EQ(project["layers"][1]["name"], "gold");
-    EXPECT_EQ(project["layers"][1]["blend"], "multiply");
+    EXPECT_EQ(project["layers"][0]["name"], "gold");
+    EXPECT_EQ(project["layers"][0]["blend"], "multiply");
     tuft("replay '" + path("work.tuft") + "' --json");
 }
 
