@@ -90,8 +90,10 @@ class PaintFinder {
             if (w[1] < 0 || w[2] < 0 || w[1] + w[2] >= 1) return -1.0;
             return coverage_(surface_.source[t], in_model(surface_.weights[t], w));
         };
-        for (int y = static_cast<int>(std::floor(lo.y)); y <= static_cast<int>(std::ceil(hi.y)); ++y)
-            for (int x = static_cast<int>(std::floor(lo.x)); x <= static_cast<int>(std::ceil(hi.x)); ++x) {
+        const int top = std::min(grid_.height - 1, static_cast<int>(std::ceil(hi.y)));
+        const int right = std::min(grid_.width - 1, static_cast<int>(std::ceil(hi.x)));
+        for (int y = std::max(0, static_cast<int>(std::floor(lo.y))); y <= top; ++y)
+            for (int x = std::max(0, static_cast<int>(std::floor(lo.x))); x <= right; ++x) {
                 const std::size_t at = grid_.index(x, y);
                 double middle = fine_ % 2 ? -1 : value_at(Vec2(x, y));
                 for (int j = 0; j < fine_; ++j)
@@ -141,9 +143,12 @@ class PaintFinder {
             const int other = 1 - axis;
             if (a[axis] == b[axis]) continue;
             const double lo = std::min(a[axis], b[axis]), hi = std::max(a[axis], b[axis]);
-            for (int k = static_cast<int>(std::ceil(lo)); k <= hi; ++k) {
+            const int last = (axis == 0 ? grid_.width : grid_.height) - 1;
+            const int across = (axis == 0 ? grid_.height : grid_.width) - 1;
+            for (int k = std::max(0, static_cast<int>(std::ceil(lo))); k <= hi && k <= last; ++k) {
                 const double q = a[other] + (k - a[axis]) / (b[axis] - a[axis]) * (b[other] - a[other]);
                 const int cell = static_cast<int>(std::floor(q));
+                if (cell < 0 || cell >= across) continue;
                 // On a line of x the edge goes up, on a line of y to the right.
                 rim_[axis == 0 ? grid_.edge_up(k, cell) : grid_.edge_right(cell, k)] = static_cast<float>(q - cell);
             }

@@ -16,7 +16,7 @@ struct PaintField {
 
 /// Samples the coverage about each node a texel apart, at most 5 × 5 in a cell. `texel` is in metres. The border of
 /// `painted` is where the coverage is a half, by bisection to 1/64 of a cell, or where the surface ends. A line of
-/// paint that passes between nodes is as wide as its samples, each a square.
+/// paint that passes between nodes is as wide as its samples, each a square. What lies off the grid is passed over.
 PaintField find_paint(const PrintSurface& surface, const CoverageFn& coverage, const Grid& grid, double texel);
 
 /// Returns the sum of `coverage` times the cell's area over the nodes in a region, m².

@@ -47,6 +47,7 @@ struct PrintSource {
     const ink::AtlasMap<std::uint8_t>* colour = nullptr;  ///< sRGB; null: no picture is made
     const ink::AtlasMap<float>* amounts = nullptr;        ///< film units, a channel for each plate; null: no plates
     std::vector<float> full;                              ///< [n_plates] amount of a tint of 100 %
+    std::vector<CoverageFn> plates;                       ///< [n_plates] coverage of each, for outlines; or empty
     double texel = 1e-4;                                  ///< metres
 };
 

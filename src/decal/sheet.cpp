@@ -300,6 +300,41 @@ Region placed(const Region& region, const PagePlacement& placement) {
     return out;
 }
 
+/// The number of an ink among those of the sheet, with which its colour is averaged.
+std::size_t add_ink(const PrintedInk& printed, std::vector<PrintedInk>& inks) {
+    const auto same = std::ranges::find_if(inks, [&](const PrintedInk& i) { return is_same_mix(i.mix, printed.mix); });
+    if (same == inks.end()) {
+        inks.push_back(printed);
+        return inks.size() - 1;
+    }
+    const double part = printed.weight / (same->weight + printed.weight);
+    for (std::size_t c = 0; c < 3; ++c) same->colour[c] = std::lerp(same->colour[c], printed.colour[c], part);
+    same->weight += printed.weight;
+    return static_cast<std::size_t>(same - inks.begin());
+}
+
+/// Draws the paint of a piece onto its page.
+void draw_paint(const PrintSource& source, const SheetOptions& options, Piece& piece, const PrintSurface& surface,
+                Page& page, std::vector<PrintedInk>& inks) {
+    const double bleed = printed_bleed(options);
+    const auto add_area = [&](std::size_t ink, const CoverageFn& coverage) {
+        Region region = find_ink_area(surface, coverage, piece.film, bleed, source.texel);
+        piece.outlined = true;
+        if (!region.empty()) page.areas.push_back({ink, placed(region, piece.placement)});
+    };
+    if (options.outlines && !source.plates.empty()) {
+        for (std::size_t m = 0; m < source.plates.size(); ++m) add_area(m, source.plates[m]);
+        return;
+    }
+    if (!options.prints && !options.outlines) return;
+    PrintImage image = print_piece(surface, source, piece.placement, piece.film, bleed, options.pixel);
+    if (options.outlines) {
+        if (const auto ink = find_single_ink(image, source.full)) return add_area(add_ink(*ink, inks), source.coverage);
+        image.plates.clear();
+    }
+    if (options.prints) page.prints.push_back(std::move(image));
+}
+
 void draw_pieces(const CutFilm& cut, const PrintSource& source, const SheetOptions& options,
                  const std::vector<Vec2>& labels, Sheet& sheet) {
     const std::size_t n = sheet.pages.size();
@@ -308,14 +343,13 @@ void draw_pieces(const CutFilm& cut, const PrintSource& source, const SheetOptio
             sheet.pages.push_back({.size = sheet.pages[i].size});
             sheet.pages.back().strain_map = true;
         }
+    std::vector<PrintedInk> inks;
     for (std::size_t i = 0; i < sheet.pieces.size(); ++i) {
         report(options.progress, "prints", static_cast<double>(i) / static_cast<double>(sheet.pieces.size()));
-        const Piece& piece = sheet.pieces[i];
+        Piece& piece = sheet.pieces[i];
         const PrintSurface& surface = sheet.surfaces[piece.surface];
         Page& page = sheet.pages[piece.page];
-        if (options.prints)
-            page.prints.push_back(
-                print_piece(surface, source, piece.placement, piece.film, printed_bleed(options), options.pixel));
+        draw_paint(source, options, piece, surface, page, inks);
         for (const Ring& ring : placed(piece.film, piece.placement)) page.lines.push_back({ring, true, Role::cut});
         add_lap_lines(cut, piece, options, page);
         const Vec2 up{piece.placement.c * piece.up.x - piece.placement.s * piece.up.y,
@@ -327,6 +361,7 @@ void draw_pieces(const CutFilm& cut, const PrintSource& source, const SheetOptio
         for (const Ring& ring : placed(piece.film, piece.placement)) map.lines.push_back({ring, true, Role::label});
         add_label(map, piece.number, labels[i], up);
     }
+    for (PrintedInk& ink : inks) sheet.inks.push_back({.name = {}, .colour = ink.colour, .mix = std::move(ink.mix)});
     for (std::size_t i = 0; i < sheet.pages.size(); ++i)
         add_marks(sheet.pages[i], {.title = options.title, .page = i % n + 1, .pages = n, .limit = options.max_strain});
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/system/progress.h"
+#include "decal/ink_areas.h"
 #include "decal/outline.h"
 #include "decal/print.h"
 
@@ -26,11 +27,18 @@ struct Line {
     Role role = Role::cut;
 };
 
+/// Paint of one ink on a page, with its borders instead of a picture.
+struct InkArea {
+    std::size_t ink = 0;  ///< index into `Sheet::inks`
+    Region region;        ///< metres from the lower left corner, y up
+};
+
 /// A page of film, or the map of its strain.
 struct Page {
     Vec2 size{0};  ///< metres
     std::vector<Line> lines;
     std::vector<PrintImage> prints;
+    std::vector<InkArea> areas = {};
     bool strain_map = false;
 };
 
@@ -44,6 +52,7 @@ struct Piece {
     Vec2 up{0, 1};            ///< unit, of the arrow beside it, in that plane
     std::size_t page = 0;     ///< index into `Sheet::pages`
     PagePlacement placement;  ///< of that plane
+    bool outlined = false;    ///< its paint is in `Page::areas`
 };
 
 /// A plate: one ink of a screen or pad print.
@@ -51,6 +60,13 @@ struct Plate {
     std::string name;                       ///< of the pigment
     std::array<double, 3> colour{0, 0, 0};  ///< sRGB 0–1 of a tint of 100 %, for screens
     double full = 1;                        ///< film units of a tint of 100 %
+};
+
+/// An ink of `Page::areas`.
+struct SheetInk {
+    std::string name;                       ///< `make_sheet` leaves it empty
+    std::array<double, 3> colour{0, 0, 0};  ///< sRGB 0–1
+    std::vector<double> mix = {};           ///< [n_plates] parts of the pigments, sum 1; empty: those of its plate
 };
 
 /// What `make_sheet` left out; see there.
@@ -64,8 +80,9 @@ struct Sheet {
     std::vector<Page> pages;
     std::vector<Piece> pieces;
     std::vector<PrintSurface> surfaces;
-    std::vector<Plate> plates;  ///< of `PrintImage::plates`
-    double max_strain = 0;      ///< limit
+    std::vector<Plate> plates;   ///< of `PrintImage::plates`
+    std::vector<SheetInk> inks;  ///< of `Page::areas`; with plates one for each, in their order
+    double max_strain = 0;       ///< limit
     LeftOut left_out;
     /// ICC profile of the colours of `PrintImage::rgb`; empty: the writer's own of sRGB.
     std::vector<std::uint8_t> profile = {};
@@ -84,6 +101,7 @@ struct SheetOptions {
     double pixel = 0.0254 / 300;   ///< metres
     bool strain_map = false;       ///< appends a page of strain for each page of film
     bool prints = true;            ///< makes pictures; else lines only
+    bool outlines = false;         ///< areas instead of pictures; see `make_sheet`
     std::string title;             ///< in the foot of each page
     ProgressFn progress;
 };
@@ -102,6 +120,10 @@ bool is_sliver(const Piece& piece, double least);
 /// 100 times as much, and that has less than `least_fragment`, is too small to be laid and not missed: it is left out.
 /// So are specks anywhere of less than a tenth of `least_fragment`, if all of them together have less than a thousandth
 /// of all paint; and likewise slivers of less than `least_piece`. `Sheet::left_out` says how much.
+///
+/// With `outlines` the paint of a piece is `InkArea`s (`find_ink_area`): one for each plate if `PrintSource::plates`
+/// are given, else one if the piece is painted in a single ink (`find_single_ink`); a piece of several inks is a
+/// picture.
 ///
 /// Pages of film come first, then their strain maps. Throws `Error` where nothing is painted or a piece fits no page.
 /// The same bits for any number of threads.

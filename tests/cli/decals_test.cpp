@@ -61,6 +61,24 @@ TEST_F(Decals, WritesAPlateForEachPigmentAndCutLinesAlone) {
     EXPECT_NE(read(path("cut.dxf")).find("CutContour"), std::string::npos);
 }
 
+TEST_F(Decals, OutlinesWhatIsPaintedInOneInk) {
+    write("s.inkml", stroke_file());
+    const std::string project = path("p.tuft");
+    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --atlas-size 512 --ink carbon --quiet --strokes " +
+                   path("s.inkml") + " --project " + project)
+                  .status,
+              0);
+    const test::Ran dxf = tuft("decals " + project + " -o " + path("ink.dxf") + " --outlines --json");
+    ASSERT_EQ(dxf.status, 0) << dxf.err;
+    const nlohmann::json j = nlohmann::json::parse(dxf.out);
+    EXPECT_EQ(j.at("inks"), nlohmann::json{"carbon black"});
+    for (const nlohmann::json& piece : j.at("pieces")) EXPECT_TRUE(piece.at("outlined"));
+    EXPECT_NE(read(path("ink.dxf")).find("Ink carbon black"), std::string::npos);
+    const test::Ran svg = tuft("decals " + project + " -o " + path("ink.svg") + " --outlines --plates");
+    ASSERT_EQ(svg.status, 0) << svg.err;
+    EXPECT_EQ(read(path("ink.svg")).find("<image"), std::string::npos);
+}
+
 TEST_F(Decals, LaysAMaskFlatWhereNothingIsPainted) {
     const std::string project = bowl();
     ASSERT_EQ(tuft("mask " + project + " band --lasso '-40,-10 40,-10 40,10 -40,10' --view 200,0").status, 0);
@@ -108,7 +126,8 @@ TEST_F(Decals, RefusesBadInputInOneLineAndWritesNothing) {
         EXPECT_EQ(ran.error_lines(), 1) << options << ran.err;
     }
     for (const std::string& command :
-         {"decals " + project + " -o " + path("x.png"), "decals " + project + " -o " + path("x.svg") + " --plates"}) {
+         {"decals " + project + " -o " + path("x.png"), "decals " + project + " -o " + path("x.svg") + " --plates",
+          "decals " + project + " -o " + path("x.pdf") + " --outlines --mask band"}) {
         EXPECT_EQ(tuft(command).status, 2) << command;
     }
     for (const std::string& command :

@@ -130,6 +130,81 @@ TEST_F(SheetFiles, PdfHoldsAPlateForEachPigment) {
     EXPECT_EQ(std::distance(std::sregex_iterator(list.begin(), list.end(), separation), std::sregex_iterator()), 2);
 }
 
+// Ghostscript, which shares nothing with us, parts the file into its inks: a grey picture of each, white without ink.
+// On its screen picture the plates lie over each other: the product of their tints' colours. 3 of 255: it rounds both.
+TEST_F(SheetFiles, AnotherReaderFindsThePlatesByTheirNamesAndTheirColoursTogether) {
+    const decal::Sheet sheet = sample(true);
+    const fs::path pdf = folder_ / "plates.pdf";
+    write_sheet(pdf, sheet);
+    const std::string gs = "gs -q -dNOPAUSE -dBATCH -dSAFER -r50.8 -sOutputFile='" + folder_.string() + "/";
+    if (output_of("gs --version").empty()) GTEST_SKIP() << "ghostscript is not installed";
+    output_of(gs + "p.tif' -sDEVICE=tiffsep '" + pdf.string() + "'");
+    output_of(gs + "p.png' -sDEVICE=png16m '" + pdf.string() + "'");
+    ASSERT_TRUE(fs::exists(folder_ / "p(CutContour).tif"));
+    const Image8 screen = read_image8(folder_ / "p.png"), cut = read_image8(folder_ / "p(CutContour).tif");
+    std::vector<Image8> plates;
+    for (const decal::Plate& plate : sheet.plates) {
+        ASSERT_TRUE(fs::exists(folder_ / ("p(" + plate.name + ").tif"))) << plate.name;
+        plates.push_back(read_image8(folder_ / ("p(" + plate.name + ").tif")));
+    }
+    const auto at = [&](const Image8& image, double x, double y) {
+        return static_cast<std::size_t>(2 * (87.6 - y)) * static_cast<std::size_t>(image.width) +
+               static_cast<std::size_t>(2 * x);
+    };
+    EXPECT_LT(cut.pixels[at(cut, 50, 30.1)], 255);  // on the cut line
+    EXPECT_EQ(cut.pixels[at(cut, 50, 50)], 255);
+    for (std::size_t i = 0; i < 6; ++i) {
+        const double x = 32.5 + 5 * static_cast<double>(i % 2), y = 52.5 - 5 * static_cast<double>(i / 2);
+        std::array<double, 3> product{255, 255, 255};
+        for (std::size_t m = 0; m < plates.size(); ++m) {
+            const int tint = 255 - plates[m].pixels[at(plates[m], x, y)];
+            EXPECT_NEAR(tint, sheet.pages[0].prints[0].plates[m][i], 1);
+            for (std::size_t c = 0; c < 3; ++c) product[c] *= 1 - tint / 255.0 * (1 - sheet.plates[m].colour[c]);
+        }
+        for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(screen.pixels[3 * at(screen, x, y) + c], product[c], 3) << i;
+    }
+}
+
+/// The page without pictures: a square of 40 × 20 mm with a hole of 10 × 10 mm in the first ink, a triangle in the
+/// second.
+decal::Sheet outlined(bool plates) {
+    decal::Sheet sheet = sample(plates);
+    sheet.pages[0].prints.clear();
+    sheet.inks = {{.name = "cobalt-underglaze", .colour = {0.2, 0.4, 0.6}},
+                  {.name = "iron <red>", .colour = {0.6, 0.4, 0.2}}};
+    if (plates) sheet.plates = {{"cobalt-underglaze", {0.2, 0.4, 0.6}, 1.5}, {"iron <red>", {0.6, 0.4, 0.2}, 2.0}};
+    sheet.pages[0].areas = {{0,
+                             {{{0.03, 0.04}, {0.07, 0.04}, {0.07, 0.06}, {0.03, 0.06}},
+                              {{0.04, 0.045}, {0.04, 0.055}, {0.05, 0.055}, {0.05, 0.045}}}},
+                            {1, {{{0.022, 0.032}, {0.028, 0.032}, {0.025, 0.038}}}}};
+    return sheet;
+}
+
+TEST_F(SheetFiles, AreasOfOneInkAreFilledPathsWithTheirHoles) {
+    for (const bool plates : {false, true}) {
+        const fs::path pdf = folder_ / (plates ? "plates.pdf" : "inks.pdf");
+        write_sheet(pdf, outlined(plates));
+        if (output_of("pdfinfo '" + pdf.string() + "'").empty()) GTEST_SKIP() << "poppler-utils is not installed";
+        EXPECT_EQ(output_of("pdfimages -list '" + pdf.string() + "'").find("image"), std::string::npos);
+        output_of("pdftoppm -r 254 -png '" + pdf.string() + "' '" + (folder_ / "areas").string() + "'");
+        const Image8 page = read_image8(folder_ / "areas-1.png");
+        const auto at = [&](double x, double y) {
+            const auto i = static_cast<std::size_t>((87.6 - y) * 10) * static_cast<std::size_t>(page.width) +
+                           static_cast<std::size_t>(x * 10);
+            return std::array<int, 3>{page.pixels[3 * i], page.pixels[3 * i + 1], page.pixels[3 * i + 2]};
+        };
+        EXPECT_EQ(at(32, 50), (std::array<int, 3>{51, 102, 153}));  // 0.2, 0.4, 0.6 of 255
+        EXPECT_EQ(at(60, 50), (std::array<int, 3>{51, 102, 153}));
+        EXPECT_EQ(at(45, 50), (std::array<int, 3>{255, 255, 255}));  // the hole
+        EXPECT_EQ(at(25, 34), (std::array<int, 3>{153, 102, 51}));
+    }
+    const std::string svg = svg_text(outlined(false), 0);
+    EXPECT_NE(svg.find("id=\"Ink cobalt-underglaze\""), std::string::npos);
+    EXPECT_NE(svg.find("id=\"Ink iron _red_\""), std::string::npos);  // no characters that DXF forbids
+    EXPECT_NE(svg.find("fill=\"#336699\""), std::string::npos);
+    EXPECT_NE(svg.find("M40.0000,42.6000 L40.0000,32.6000"), std::string::npos);
+}
+
 TEST_F(SheetFiles, SvgIsInMillimetres) {
     const fs::path path = folder_ / "sheet.svg";
     ASSERT_EQ(write_sheet(path, sample(false)), std::vector<fs::path>{path});
@@ -172,6 +247,20 @@ TEST_F(SheetFiles, DxfHasClosedPolylinesOnNamedLayers) {
     EXPECT_EQ(points["Registration"].size(), 2u);
     EXPECT_EQ(points["Labels"].size(), 3u);
     EXPECT_EQ(pairs.back(), (std::pair<int, std::string>{0, "EOF"}));
+}
+
+TEST_F(SheetFiles, DxfHasAClosedPolylineForEachBorderOfAnInk) {
+    const auto pairs = dxf_pairs(dxf_text(outlined(true), 0));
+    std::map<std::string, int> closed;
+    std::vector<std::string> layers;
+    for (std::size_t i = 0; i + 7 < pairs.size(); ++i) {
+        if (pairs[i] == std::pair<int, std::string>{0, "LAYER"}) layers.push_back(pairs[i + 1].second);
+        if (pairs[i] == std::pair<int, std::string>{0, "POLYLINE"} && pairs[i + 6].second == "1")
+            ++closed[pairs[i + 1].second];
+    }
+    EXPECT_EQ(closed["Ink cobalt-underglaze"], 2);
+    EXPECT_EQ(closed["Ink iron _red_"], 1);
+    EXPECT_EQ(std::count(layers.begin(), layers.end(), "Ink iron _red_"), 1);
 }
 
 // 4: millimetres, 1: metric (DXF reference, header variables).

@@ -74,8 +74,13 @@ void page_rows(Ui& ui, DecalSettings& c, const SheetFormat& format) {
     if (ui.combo("Dots per inch", dpi, {"150", "300", "600", "1200"}, 100)) c.dpi = std::stoi(dpi);
     ImGui::EndDisabled();
     dialog_row(ui, "");
-    ImGui::BeginDisabled(!format.plates);
+    ImGui::BeginDisabled(!format.plates && !c.outlines);
     ui.toggle("A plate for each pigment", c.plates, "Separations for screen and pad printing instead of colours");
+    ImGui::EndDisabled();
+    dialog_row(ui, "");
+    ImGui::BeginDisabled(!c.mask.empty());
+    ui.toggle("Outlines of inks", c.outlines,
+              "What is painted in one ink, or each plate, as filled outlines instead of a picture");
     ImGui::EndDisabled();
     dialog_row(ui, "");
     ImGui::BeginDisabled(!format.prints);
@@ -97,7 +102,8 @@ ExportSheets sheets_command(const DecalSettings& c, const stroke::MaskTable& mas
     ExportSheets command{path, {}};
     io::SheetRequest& request = command.request;
     if (const stroke::Mask* mask = masks.find(c.mask)) request.mask = mask->id;
-    request.plates = c.plates && format.plates;
+    request.sheet.outlines = c.outlines && request.mask == 0;
+    request.plates = c.plates && (format.plates || request.sheet.outlines);
     request.sheet.max_strain = c.max_strain;
     request.sheet.bleed = c.bleed;
     request.sheet.overlap = c.overlap;

@@ -31,6 +31,7 @@ struct DecalSettings {
     int dpi = 300;
     std::string mask;  ///< name; empty: all that is painted
     bool plates = false, strain_map = false, along_grain = false;
+    bool outlines = false;   ///< of areas of one ink, instead of pictures
     bool fragments = false;  ///< pieces too small to be laid, too
 };
 

@@ -396,6 +396,7 @@ struct PrintChoice {
     std::string grain = "free";         ///< free | up
     double dpi = 300;                   ///< dots per inch
     bool plates = false;                ///< a separation for each pigment
+    bool outlines = false;              ///< areas of one ink as paths instead of pictures
     bool strain_map = false;            ///< pages that show the strain of the film
     std::string colour_space = "srgb";  ///< srgb | display-p3
 };

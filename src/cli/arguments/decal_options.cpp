@@ -112,6 +112,10 @@ CLI::App* add_decals(CLI::App& app, Decals& d) {
         ->check(CLI::IsMember({"free", "up"}));
     s->add_option("--dpi", d.print.dpi, "dots per inch of the print")->check(number_in(10, 4800));
     s->add_flag("--plates", d.print.plates, "print one plate for each pigment, a separation of its name (.pdf)");
+    s->add_flag(
+        "--outlines", d.print.outlines,
+        "print what is painted in one ink, or with --plates each plate, as filled outlines instead of a picture; "
+        "in .svg and .dxf on a layer 'Ink NAME' each");
     s->add_option("--colour-space", d.print.colour_space,
                   "of the pictures, whose profile is stored: srgb (default), display-p3")
         ->check(CLI::IsMember({"srgb", "display-p3"}));

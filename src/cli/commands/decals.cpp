@@ -48,6 +48,7 @@ decal::SheetOptions sheet_options(const Decals& a, Console& console) {
     options.pixel = 0.0254 / a.print.dpi;
     options.strain_map = a.print.strain_map;
     options.prints = format_of(a) != ".dxf";
+    options.outlines = a.print.outlines;
     options.title = a.project.stem().string();
     options.progress = console.progress();
     return options;
@@ -60,13 +61,16 @@ nlohmann::json piece_json(const decal::Piece& piece) {
             {"size_mm", {size.x, size.y}},
             {"film_mm2", decal::area_of(piece.film) * 1e6},
             {"paint_mm2", piece.paint_area * 1e6},
-            {"strain", piece.strain}};
+            {"strain", piece.strain},
+            {"outlined", piece.outlined}};
 }
 
 void check_request(const Decals& a) {
     check_extension(a.output, {".pdf", ".svg", ".dxf"});
-    if (a.print.plates && format_of(a) != ".pdf")
-        throw UsageError("--plates: plates are separations, which only a .pdf has");
+    if (a.print.plates && format_of(a) != ".pdf" && !a.print.outlines)
+        throw UsageError("--plates: plates are separations, which only a .pdf has; with --outlines they are layers");
+    if (a.print.outlines && !a.mask.empty())
+        throw UsageError("--outlines: those of what is painted; the outline of a mask is its cut line");
     check_output(a.output);
     if (!a.guide.empty()) check_folder(a.guide);
 }
@@ -83,6 +87,16 @@ void print_slivers(const decal::Sheet& sheet) {
                    counted(n, "small piece"), paint * 1e6);
 }
 
+/// Says which inks have outlines, and what has none.
+void print_outlined(const Decals& a, const decal::Sheet& sheet) {
+    for (const decal::SheetInk& ink : sheet.inks) fmt::print("outlines of ink {}\n", ink.name);
+    const auto mixed = static_cast<std::size_t>(
+        std::ranges::count_if(sheet.pieces, [](const decal::Piece& piece) { return !piece.outlined; }));
+    if (mixed > 0)
+        fmt::print("{} of several inks {} (--plates outlines each pigment)\n", counted(mixed, "piece"),
+                   format_of(a) == ".dxf" ? "without outlines" : "as pictures");
+}
+
 void print_result(const Decals& a, const decal::Sheet& sheet, const std::vector<std::string>& wrote) {
     const std::size_t pages = static_cast<std::size_t>(std::count_if(
         sheet.pages.begin(), sheet.pages.end(), [](const decal::Page& page) { return !page.strain_map; }));
@@ -94,10 +108,12 @@ void print_result(const Decals& a, const decal::Sheet& sheet, const std::vector<
             {"max_strain", sheet.max_strain},
             {"left_out", {{"fragments", sheet.left_out.fragments}, {"paint_mm2", sheet.left_out.paint_area * 1e6}}},
             {"pieces", nlohmann::json::array()},
-            {"plates", nlohmann::json::array()}};
+            {"plates", nlohmann::json::array()},
+            {"inks", nlohmann::json::array()}};
         for (const decal::Piece& piece : sheet.pieces) j["pieces"].push_back(piece_json(piece));
         for (const decal::Plate& plate : sheet.plates)
             j["plates"].push_back({{"name", plate.name}, {"full_film_units", plate.full}});
+        for (const decal::SheetInk& ink : sheet.inks) j["inks"].push_back(ink.name);
         print_json(j);
         return;
     }
@@ -112,6 +128,7 @@ void print_result(const Decals& a, const decal::Sheet& sheet, const std::vector<
         fmt::print("left out: {} with {:.1f} mm2 of paint (--least-fragment 0 lays them)\n",
                    counted(sheet.left_out.fragments, "fragment"), sheet.left_out.paint_area * 1e6);
     print_slivers(sheet);
+    if (a.print.outlines) print_outlined(a, sheet);
     for (const decal::Plate& plate : sheet.plates)
         fmt::print("plate {}: 100 % is {:.2f} film units\n", plate.name, plate.full);
     for (const std::string& path : wrote) fmt::print("wrote {}\n", path);

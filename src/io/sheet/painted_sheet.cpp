@@ -1,6 +1,9 @@
 #include "io/sheet/painted_sheet.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "atlas/texels/gutter.h"
 #include "core/error.h"
@@ -19,6 +22,7 @@ constexpr int kSpread = 3;              // texels
 struct Maps {
     ink::AtlasMap<float> coverage, amounts;
     ink::AtlasMap<std::uint8_t> colour;
+    std::vector<ink::AtlasMap<std::uint8_t>> plates;  // coverage by each, of 255
 };
 
 ink::AtlasMap<float> coverage_of_mask(std::uint32_t mask, const stroke::Document& painting) {
@@ -58,10 +62,9 @@ struct PaintCoverage {
 
 /// Paint covers a texel where there is any. Beside a bare texel the film is that of a part of the texel, so the part is
 /// what it has of the thickest film round it.
-PaintCoverage coverage_of_paint(const ink::AtlasMap<float>& amounts) {
-    const std::vector<float> film = film_of(amounts);
-    const std::size_t n = amounts.size;
-    PaintCoverage paint{{amounts.size, 1, std::vector<float>(film.size(), 0)}, {}};
+PaintCoverage coverage_of_film(const std::vector<float>& film, std::uint32_t size) {
+    const std::size_t n = size;
+    PaintCoverage paint{{size, 1, std::vector<float>(film.size(), 0)}, {}};
     std::vector<std::vector<std::pair<std::size_t, std::size_t>>> edges(n);
     parallel_for(n, 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t y = begin; y < end; ++y)
@@ -101,20 +104,47 @@ Maps make_maps(const stroke::Document& painting, const SheetRequest& request) {
     compose.space = request.space;
     const bool painted = !painting.layers().pigments().empty() && !stack.layers.empty();
     if (!painted && (!request.mask || request.plates)) throw Error("nothing is painted: there is no film to cut");
+    const bool outlines = request.sheet.outlines && !request.mask;
     if (!request.mask || request.plates) maps.amounts = ink::compose_amounts(stack, texels, compose);
     PaintCoverage paint;
     if (request.mask)
         paint.coverage = coverage_of_mask(request.mask, painting);
     else
-        paint = coverage_of_paint(maps.amounts);
-    if (!request.plates) maps.amounts = {};
-    if (request.sheet.prints) {
+        paint = coverage_of_film(film_of(maps.amounts), maps.amounts.size);
+    if (!request.plates && !outlines) maps.amounts = {};
+    if (request.sheet.prints || outlines) {
         maps.colour = ink::compose_srgb8(stack, texels, painting.appearance().substrate(), compose);
         sharpen_edges(maps.colour, paint);
         decal::spread_colours(maps.colour, paint.coverage, kSpread);
     }
     maps.coverage = std::move(paint.coverage);
     return maps;
+}
+
+/// Coverage by a pigment, of 255.
+ink::AtlasMap<std::uint8_t> plate_coverage(const ink::AtlasMap<float>& amounts, std::size_t channel) {
+    const auto n = static_cast<std::size_t>(amounts.channels);
+    std::vector<float> film;
+    film.reserve(amounts.texels.size() / n);
+    for (std::size_t i = channel; i < amounts.texels.size(); i += n) film.push_back(amounts.texels[i]);
+    const ink::AtlasMap<float> coverage = coverage_of_film(film, amounts.size).coverage;
+    ink::AtlasMap<std::uint8_t> plate{amounts.size, 1, {}};
+    plate.texels.reserve(coverage.texels.size());
+    for (const float c : coverage.texels) plate.texels.push_back(static_cast<std::uint8_t>(std::lround(255 * c)));
+    return plate;
+}
+
+/// "carbon black", or of a mix "indigo 70 + gamboge 30", in hundredths.
+std::string name_of_mix(const std::vector<double>& mix, const std::vector<decal::Plate>& pigments) {
+    constexpr double kNamed = 0.02;
+    std::string name;
+    const bool pure = std::ranges::count_if(mix, [](double part) { return part >= kNamed; }) == 1;
+    for (std::size_t m = 0; m < mix.size(); ++m) {
+        if (mix[m] < kNamed) continue;
+        name += (name.empty() ? "" : " + ") + pigments[m].name;
+        if (!pure) name += fmt::format(" {:.0f}", 100 * mix[m]);
+    }
+    return name;
 }
 
 /// Keeps the pigments of which there is something; a tint of 100 % is the most of each anywhere.
@@ -150,13 +180,15 @@ std::vector<decal::Plate> find_plates(ink::AtlasMap<float>& amounts, const strok
 decal::Sheet make_painted_sheet(const stroke::Document& painting, const SheetRequest& request) {
     const stroke::Model& model = painting.model();
     Maps maps = make_maps(painting, request);
+    const bool outlines = request.sheet.outlines && !request.mask;
     std::vector<decal::Plate> plates;
-    if (request.plates) plates = find_plates(maps.amounts, painting);
+    if (request.plates || outlines) plates = find_plates(maps.amounts, painting);
     decal::PrintSource source{.corner_uvs = model.atlas.corner_uvs,
                               .coverage = {},
                               .colour = &maps.colour,
-                              .amounts = request.plates ? &maps.amounts : nullptr,
+                              .amounts = plates.empty() ? nullptr : &maps.amounts,
                               .full = {},
+                              .plates = {},
                               .texel = model.atlas.texel_size};
     source.coverage = [&](std::uint32_t triangle, const decal::Weights& weights) {
         float value = 0;
@@ -164,8 +196,24 @@ decal::Sheet make_painted_sheet(const stroke::Document& painting, const SheetReq
         return double{value};
     };
     for (const decal::Plate& plate : plates) source.full.push_back(static_cast<float>(plate.full));
-    decal::Sheet sheet = decal::make_sheet(*model.mesh, source, request.sheet);
-    sheet.plates = std::move(plates);
+    if (request.plates && outlines) {
+        for (std::size_t p = 0; p < plates.size(); ++p) maps.plates.push_back(plate_coverage(maps.amounts, p));
+        for (const auto& map : maps.plates)
+            source.plates.push_back([&](std::uint32_t triangle, const decal::Weights& weights) {
+                float value = 0;
+                decal::sample(map, decal::uv_of(source.corner_uvs, triangle, weights), &value);
+                return double{value} / 255;
+            });
+    }
+    decal::SheetOptions options = request.sheet;
+    options.outlines = outlines;
+    decal::Sheet sheet = decal::make_sheet(*model.mesh, source, options);
+    for (decal::SheetInk& ink : sheet.inks) ink.name = name_of_mix(ink.mix, plates);
+    if (request.plates) {
+        if (outlines)
+            for (const decal::Plate& plate : plates) sheet.inks.push_back({.name = plate.name, .colour = plate.colour});
+        sheet.plates = std::move(plates);
+    }
     sheet.profile = icc_profile(request.space);
     return sheet;
 }

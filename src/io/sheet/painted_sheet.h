@@ -10,8 +10,10 @@ namespace tuft::io {
 
 /// What `tuft decals` and the studio ask of a sheet.
 struct SheetRequest {
-    std::uint32_t mask = 0;  ///< id of the mask whose areas are cut out, painted or not; 0: all that is painted
-    bool plates = false;     ///< one plate for each pigment instead of colours
+    /// Id of the mask whose areas are cut out, painted or not, never as `SheetOptions::outlines`; 0: all that is
+    /// painted.
+    std::uint32_t mask = 0;
+    bool plates = false;  ///< one plate for each pigment instead of colours
     ink::ColourSpace space = ink::ColourSpace::srgb;
     decal::SheetOptions sheet;  ///< without `prints` the result suits .dxf
 };

@@ -93,9 +93,12 @@ class PdfSheet {
         state.AddKey("op", PdfVariant(true));
         state.AddKey("OPM", PdfVariant(static_cast<PoDoFo::pdf_int64>(1)));
         overprint_ = document_.GetObjects().CreateObject(PdfVariant(state));
-        // Screens without separations show all plates over each other.
-        state.AddKey("BM", PdfName("Multiply"));
-        plate_state_ = document_.GetObjects().CreateObject(PdfVariant(state));
+        // Plates lie over each other as films do: where one has no ink, multiplying leaves the others alone. Not
+        // together with overprint: then Ghostscript multiplies the plates that are already there by themselves.
+        PdfDictionary over;
+        over.AddKey("Type", PdfName("ExtGState"));
+        over.AddKey("BM", PdfName("Multiply"));
+        plate_state_ = document_.GetObjects().CreateObject(PdfVariant(over));
     }
 
     PdfObject* picture(const decal::PrintImage& image, const std::vector<std::uint8_t>& data, const PdfVariant& space) {
@@ -129,10 +132,26 @@ class PdfSheet {
         place("", colour);
     }
 
+    void add_area(const decal::InkArea& area, std::string& content) const {
+        const decal::SheetInk& ink = sheet_.inks[area.ink];
+        content += sheet_.plates.empty() ? fmt::format("q /Colour cs {:.4f} {:.4f} {:.4f} sc\n", ink.colour[0],
+                                                       ink.colour[1], ink.colour[2])
+                                         : fmt::format("q /Plate gs /Plate{} cs 1 scn\n", area.ink);
+        for (const decal::Ring& ring : area.region) {
+            add_points(ring, content);
+            content += "h\n";
+        }
+        content += "f Q\n";
+    }
+
+    static void add_points(const std::vector<Vec2>& points, std::string& content) {
+        for (std::size_t i = 0; i < points.size(); ++i)
+            content += fmt::format("{:.4f} {:.4f} {} ", points[i].x * kPointsPerMetre, points[i].y * kPointsPerMetre,
+                                   i == 0 ? 'm' : 'l');
+    }
+
     static void add_line(const decal::Line& line, std::string& content) {
-        for (std::size_t i = 0; i < line.points.size(); ++i)
-            content += fmt::format("{:.4f} {:.4f} {} ", line.points[i].x * kPointsPerMetre,
-                                   line.points[i].y * kPointsPerMetre, i == 0 ? 'm' : 'l');
+        add_points(line.points, content);
         content += line.closed ? "s\n" : "S\n";
     }
 
@@ -152,10 +171,16 @@ class PdfSheet {
         PdfDictionary spaces, states, pictures;
         spaces.AddKey("Cut", cut_->Reference());
         spaces.AddKey("Marks", all_->Reference());
+        if (!page.areas.empty()) {
+            spaces.AddKey("Colour", rgb_->Reference());
+            for (std::size_t i = 0; i < plates_.size(); ++i)
+                spaces.AddKey(PdfName(fmt::format("Plate{}", i)), plates_[i]->Reference());
+        }
         states.AddKey("Overprint", overprint_->Reference());
         states.AddKey("Plate", plate_state_->Reference());
         std::string content;
         for (const decal::PrintImage& image : page.prints) add_picture(image, pictures, content);
+        for (const decal::InkArea& area : page.areas) add_area(area, content);
         add_lines(page, decal::Role::label, fmt::format("/Marks CS 1 SCN {} w 1 J 1 j", kLabelLine), content);
         add_lines(page, decal::Role::mark, fmt::format("/Marks CS 1 SCN {} w", kHairline), content);
         add_lines(page, decal::Role::cut, fmt::format("/Overprint gs /Cut CS 1 SCN {} w", kHairline), content);

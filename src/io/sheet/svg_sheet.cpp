@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "io/image/image.h"
 #include "io/sheet/sheet_files.h"
 
@@ -49,10 +52,44 @@ std::string lines_of(const decal::Page& page, decal::Role role) {
     return text;
 }
 
-std::string layer(const char* name, const char* style, const std::string& content) {
+std::string escaped(const std::string& text) {
+    std::string out;
+    for (const char c : text) out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+    return out;
+}
+
+std::string layer(const std::string& name, const std::string& style, const std::string& content) {
     return fmt::format(
-        "<g id=\"{0}\" class=\"{0}\" inkscape:groupmode=\"layer\" inkscape:label=\"{0}\" fill=\"none\" {1}>\n{2}</g>\n",
-        name, style, content);
+        "<g id=\"{0}\" class=\"{0}\" inkscape:groupmode=\"layer\" inkscape:label=\"{0}\" {1}>\n{2}</g>\n", name, style,
+        content);
+}
+
+/// A layer for each ink. Plates lie over each other as films do.
+std::string ink_layers(const decal::Sheet& sheet, const decal::Page& page) {
+    std::string text;
+    for (std::size_t i = 0; i < sheet.inks.size(); ++i) {
+        std::string paths;
+        for (const decal::InkArea& area : page.areas) {
+            if (area.ink != i) continue;
+            paths += "<path d=\"";
+            for (const decal::Ring& ring : area.region) {
+                for (std::size_t k = 0; k < ring.size(); ++k)
+                    paths += fmt::format("{}{:.4f},{:.4f}", k == 0 ? "M" : " L", kMm * ring[k].x,
+                                         kMm * (page.size.y - ring[k].y));
+                paths += " Z ";
+            }
+            paths += "\"/>\n";
+        }
+        if (paths.empty()) continue;
+        const auto byte = [&](std::size_t c) {
+            return std::lround(255 * std::clamp(sheet.inks[i].colour[c], 0.0, 1.0));
+        };
+        text += layer(escaped(ink_layer(sheet.inks[i].name)),
+                      fmt::format("fill=\"#{:02x}{:02x}{:02x}\" fill-rule=\"nonzero\" stroke=\"none\"{}", byte(0),
+                                  byte(1), byte(2), sheet.plates.empty() ? "" : " style=\"mix-blend-mode:multiply\""),
+                      paths);
+    }
+    return text;
 }
 
 }  // namespace
@@ -68,12 +105,15 @@ std::string svg_text(const decal::Sheet& sheet, std::size_t index) {
                "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" version=\"1.1\" width=\"{0:.4f}mm\" "
                "height=\"{1:.4f}mm\" viewBox=\"0 0 {0:.4f} {1:.4f}\">\n",
                kMm * page.size.x, kMm * page.size.y) +
-           layer("Print", "", pictures) +
+           layer("Print", "", pictures) + ink_layers(sheet, page) +
            layer("Labels",
-                 "stroke=\"#000000\" stroke-width=\"0.18\" stroke-linecap=\"round\" stroke-linejoin=\"round\"",
+                 "fill=\"none\" stroke=\"#000000\" stroke-width=\"0.18\" stroke-linecap=\"round\" "
+                 "stroke-linejoin=\"round\"",
                  lines_of(page, decal::Role::label)) +
-           layer("Registration", "stroke=\"#000000\" stroke-width=\"0.09\"", lines_of(page, decal::Role::mark)) +
-           layer(kCutContour, "stroke=\"#ff00ff\" stroke-width=\"0.09\"", lines_of(page, decal::Role::cut)) +
+           layer("Registration", "fill=\"none\" stroke=\"#000000\" stroke-width=\"0.09\"",
+                 lines_of(page, decal::Role::mark)) +
+           layer(kCutContour, "fill=\"none\" stroke=\"#ff00ff\" stroke-width=\"0.09\"",
+                 lines_of(page, decal::Role::cut)) +
            "</svg>\n";
 }
 
