@@ -18,6 +18,7 @@
 #include "io/gltf/read_gltf.h"
 #include "io/image/image.h"
 #include "io/model/read_3mf.h"
+#include "io/model/read_vrml.h"
 #include "io/model/read_x3d.h"
 #include "io/motion/motion_files.h"
 #include "io/project/project.h"
@@ -245,6 +246,7 @@ constexpr Target kTargets[] = {
     {"scene", run_scene, 2000, false},
     {"3mf", run_mesh<io::read_3mf>, 1500, false},
     {"x3d", run_mesh<io::read_x3d>, 1500, true},
+    {"wrl", run_mesh<io::read_vrml>, 1500, true},
     {"svg", run_svg, 1000, true},
     {"inkml", run_inkml, 2000, true},
     {"brush", run_brush, 3000, true},

@@ -96,6 +96,11 @@ class Box123 : public testing::TestWithParam<const char*> {
         folder_.write_picture("wood.png");
         return surface_of(folder_.path / name);
     }
+    /// X3D in one of its encodings.
+    static bool is_x3d() {
+        const std::string extension = fs::path(GetParam()).extension().string();
+        return extension == ".x3d" || extension == ".wrl";
+    }
     Folder folder_;
 };
 
@@ -118,7 +123,7 @@ TEST_P(Box123, HasItsShapeAndUnitOutwardFacesAndMirroredPartsTurnedRight) {
 TEST_P(Box123, KeepsItsObjectsMaterialsAndGroups) {
     const mesh::TriangleMesh m = read().mesh;
     // Names in X3D have no spaces.
-    const std::string red = std::string(GetParam()).ends_with(".x3d") ? "red_glaze" : "red glaze";
+    const std::string red = is_x3d() ? "red_glaze" : "red glaze";
     EXPECT_THAT(m.group_names, UnorderedElementsAre("box / " + red, "box / wood", "pent / " + red));
     std::vector<std::string> materials;
     for (const mesh::ScenePart& part : m.scene->parts) materials.push_back(part.material);
@@ -151,7 +156,7 @@ TEST_P(Box123, KeepsTheUvsOfEachCorner) {
 
 TEST_P(Box123, BringsItsPictureUnlessTheWriterHasLeftItOut) {
     const mesh::TriangleMesh m = read().mesh;
-    const bool has_none = std::string(GetParam()).ends_with(".x3d");  // Blender writes none for a node material
+    const bool has_none = is_x3d();  // Blender writes none for a node material
     for (std::size_t g = 0; g < m.group_names.size(); ++g) {
         const auto& picture = m.materials[g].picture;
         EXPECT_EQ(picture != nullptr, m.group_names[g] == "box / wood" && !has_none) << m.group_names[g];
@@ -160,7 +165,8 @@ TEST_P(Box123, BringsItsPictureUnlessTheWriterHasLeftItOut) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, Box123, testing::Values("fbx/box.fbx", "dae/box.dae", "3mf/box.3mf", "x3d/box.x3d"),
+INSTANTIATE_TEST_SUITE_P(, Box123,
+                         testing::Values("fbx/box.fbx", "dae/box.dae", "3mf/box.3mf", "x3d/box.x3d", "wrl/box.wrl"),
                          [](const auto& file) { return "Of" + fs::path(file.param).extension().string().substr(1); });
 
 TEST(ForeignFormats, AreOfMetresAndKnownByTheirExtensionInAnyCase) {
@@ -224,8 +230,8 @@ TEST(ForeignFormats, A3mfHasItsUnitItsComponentsAndAMaterialForEachTriangle) {
     EXPECT_EQ(faces["tet / blue"], 2u);
 }
 
-TEST(ForeignFormats, AnX3dHasItsSetsStripsFansAndUnit) {
-    const mesh::PolygonSoup soup = read_model(corpus("x3d/sets.x3d"));
+void expect_sets(const std::string& file) {
+    const mesh::PolygonSoup soup = read_model(corpus(file));
     const Box box = bounds_of(soup);
     EXPECT_NEAR(box.hi.x, 0.010, 1e-9) << "millimetres";
     EXPECT_NEAR(box.lo.y, -0.009, 1e-9) << "z of the file to -y";
@@ -236,6 +242,35 @@ TEST(ForeignFormats, AnX3dHasItsSetsStripsFansAndUnit) {
     EXPECT_THAT(texts(soup.warnings), Contains(HasSubstr("Inline")));
 }
 
+TEST(ForeignFormats, AnX3dHasItsSetsStripsFansAndUnit) {
+    expect_sets("x3d/sets.x3d");
+    expect_sets("wrl/sets.x3dv");  // the same in the classic encoding, with a prototype that is left out
+}
+
+TEST(ForeignFormats, VrmlIsReadInItsSecondVersionAndRefusedWithTheLine) {
+    const Folder folder;
+    const std::string shape =
+        "Shape { geometry IndexedFaceSet { coord DEF c Coordinate { point [ 0 0 0, 1 0 0, 0 1 0 ] } coordIndex [ 0 1 2 "
+        "-1 ] } }";
+    // The later of two nodes of one name is used; what stands for a shape in collisions is no shape.
+    const std::string twice =
+        "#VRML V2.0 utf8\nTransform { children DEF c Shape { } }\nCollision { proxy " + shape +
+        " children [ Shape { geometry IndexedFaceSet { coord DEF c Coordinate { point [ 0 0 5 1 0 5 0 1 5 ] } "
+        "coordIndex [ 0 1 2 ] } } Shape { geometry IndexedFaceSet { coord USE c coordIndex [ 2 1 0 ] } } ] }";
+    const mesh::PolygonSoup soup = read_model(folder.write("twice.wrl", twice));
+    EXPECT_EQ(soup.n_polygons(), 2u);
+    EXPECT_NEAR(bounds_of(soup).hi.y, -5, 1e-9);
+    EXPECT_THAT(fault_of(folder.write("old.wrl", "#VRML V1.0 ascii\nSeparator { Cube { } }")),
+                HasSubstr("is VRML 1.0, which tuft does not read; export it as VRML 2.0"));
+    EXPECT_THAT(fault_of(folder.write("zip.wrl", "\x1f\x8b\x08")), HasSubstr("gunzip"));
+    EXPECT_THAT(fault_of(folder.write("a.wrl", "#VRML V2.0 utf8\n" + shape + "\nShape { geometry [")),
+                HasSubstr("line 3"));
+    EXPECT_THAT(fault_of(folder.write("b.wrl", "#VRML V2.0 utf8\nGroup { children \"open }")), HasSubstr("no end"));
+    std::string deep = "#VRML V2.0 utf8\n";
+    for (int i = 0; i < 300'000; ++i) deep += "Group { children ";
+    EXPECT_THAT(fault_of(folder.write("deep.wrl", deep)), HasSubstr("256 deep"));
+}
+
 // A path in a file leads nowhere but into its folder.
 TEST(ForeignFormats, NeverReadAPictureOutsideTheirFolder) {
     const Folder folder;
@@ -243,7 +278,9 @@ TEST(ForeignFormats, NeverReadAPictureOutsideTheirFolder) {
     fs::create_directories(folder.path / "in");
     std::string dae = replaced(text_of(corpus("dae/box.dae")), ">wood.png<", ">../secret.png<");
     std::string x3d = replaced(text_of(corpus("x3d/sets.x3d")), "../outside.png", "../secret.png");
-    for (const fs::path& path : {folder.write("in/a.dae", dae), folder.write("in/a.x3d", x3d)}) {
+    const std::string wrl = replaced(text_of(corpus("wrl/sets.x3dv")), "../outside.png", "../secret.png");
+    for (const fs::path& path :
+         {folder.write("in/a.dae", dae), folder.write("in/a.x3d", x3d), folder.write("in/a.x3dv", wrl)}) {
         const mesh::PolygonSoup soup = read_model(path);
         EXPECT_THAT(texts(soup.warnings), Contains(HasSubstr("secret.png"))) << path;
         for (const mesh::Material& m : soup.materials) EXPECT_EQ(m.picture, nullptr) << path;

@@ -11,6 +11,7 @@
 #include "core/files/files.h"
 #include "io/gltf/read_gltf.h"
 #include "io/model/read_3mf.h"
+#include "io/model/read_vrml.h"
 #include "io/model/read_x3d.h"
 #include "io/scene/materials.h"
 
@@ -19,7 +20,7 @@ namespace {
 
 constexpr std::size_t kHead = 96;  // bytes that show the format
 
-enum class Format { obj, ply, stl, off, glb, gltf, fbx, dae, threemf, x3d, step, iges };
+enum class Format { obj, ply, stl, off, glb, gltf, fbx, dae, threemf, x3d, vrml, step, iges };
 
 std::string lower_extension(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
@@ -29,7 +30,7 @@ std::string lower_extension(const std::filesystem::path& path) {
 }
 
 std::optional<Format> by_extension(const std::filesystem::path& path) {
-    constexpr std::array<std::pair<std::string_view, Format>, 14> known{{{".obj", Format::obj},
+    constexpr std::array<std::pair<std::string_view, Format>, 17> known{{{".obj", Format::obj},
                                                                          {".ply", Format::ply},
                                                                          {".stl", Format::stl},
                                                                          {".off", Format::off},
@@ -39,6 +40,9 @@ std::optional<Format> by_extension(const std::filesystem::path& path) {
                                                                          {".dae", Format::dae},
                                                                          {".3mf", Format::threemf},
                                                                          {".x3d", Format::x3d},
+                                                                         {".x3dv", Format::vrml},
+                                                                         {".wrl", Format::vrml},
+                                                                         {".vrml", Format::vrml},
                                                                          {".step", Format::step},
                                                                          {".stp", Format::step},
                                                                          {".iges", Format::iges},
@@ -62,6 +66,7 @@ bool is_iges_line(std::string_view bytes) {
 std::optional<Format> by_content(std::string_view bytes) {
     if (bytes.starts_with("glTF")) return Format::glb;
     if (bytes.starts_with("Kaydara FBX")) return Format::fbx;
+    if (bytes.starts_with("#VRML V") || bytes.starts_with("#X3D V")) return Format::vrml;
     if (bytes.starts_with("ISO-10303-21;")) return Format::step;
     if (is_iges_line(bytes)) return Format::iges;
     if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return Format::ply;
@@ -95,6 +100,8 @@ mesh::PolygonSoup read_polygons(Format format, const std::vector<char>& bytes, c
             return read_3mf(bytes, path);
         case Format::x3d:
             return read_x3d(bytes, path);
+        case Format::vrml:
+            return read_vrml(bytes, path);
         case Format::step:
             return read_cad(CadFormat::step, bytes, path, cad);
         case Format::iges:

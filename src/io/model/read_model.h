@@ -11,7 +11,7 @@
 namespace tuft::io {
 
 /// Names of the formats that `read_model` reads, for messages.
-inline constexpr const char* kModelFormats = "OBJ, PLY, STL, OFF, GLB, glTF, FBX, DAE, 3MF, X3D, STEP and IGES";
+inline constexpr const char* kModelFormats = "OBJ, PLY, STL, OFF, GLB, glTF, FBX, DAE, 3MF, X3D, VRML, STEP and IGES";
 
 /// Returns true when `path` has the extension of one of these formats, in any case.
 bool is_model_file(const std::filesystem::path& path);
@@ -24,8 +24,9 @@ bool is_model_file(const std::filesystem::path& path);
 /// Materials become groups. Points and lines are skipped with a warning. Buffers are read from the file, from data
 /// URIs and from files inside the model's folder.
 ///
-/// FBX, DAE, 3MF and X3D: all faces with their node transforms, in metres, z up, by the file's unit and axes
-/// (read_import.h, read_3mf.h, read_x3d.h). STEP and IGES: all faces of all bodies, as triangles by `cad`, in metres.
+/// FBX, DAE, 3MF, X3D and VRML: all faces with their node transforms, in metres, z up, by the file's unit and axes
+/// (read_import.h, read_3mf.h, read_x3d.h, read_vrml.h). STEP and IGES: all faces of all bodies, as triangles by `cad`,
+/// in metres.
 ///
 /// Colours: in glTF the base colour (factor, picture of UV set 0, COLOR_0); in OBJ `Kd` and `map_Kd`; in PLY
 /// `TextureFile` and the colours of faces and vertices (materials.h).
@@ -35,7 +36,7 @@ mesh::PolygonSoup read_model(const std::filesystem::path& path, const CadReading
 bool is_cad_file(const std::filesystem::path& path);
 
 /// Returns the metres per unit of what `read_model` returns, where the format defines them: 1 for glTF, FBX, DAE, 3MF,
-/// X3D, STEP and IGES; else nothing.
+/// X3D, VRML, STEP and IGES; else nothing.
 std::optional<double> metres_per_unit_of(const std::filesystem::path& path);
 
 }  // namespace tuft::io

@@ -164,7 +164,7 @@ class Reader {
 
     void visit_one(const xml_node& node, const Mat4& world, const std::string& object, int depth) {
         const std::string_view kind = node.name();
-        if (kind == "Inline") skipped_.insert("Inline");
+        if (kind == "Inline" || kind == "ProtoDeclare") skipped_.insert(std::string(kind));
         if (kind == "Shape") return add_shape(node, world, object);
         if (kind != "Transform" && kind != "Group" && kind != "StaticGroup" && kind != "Anchor" &&
             kind != "Collision" && kind != "Switch" && kind != "LOD" && kind != "Billboard")
@@ -341,6 +341,10 @@ mesh::PolygonSoup read_x3d(const std::vector<char>& bytes, const std::filesystem
     pugi::xml_document document;
     const auto parsed = document.load_buffer(bytes.data(), bytes.size());
     if (!parsed) throw Error(path.string(), Message("not well-formed XML: {}", xml_fault(parsed)));
+    return read_x3d_tree(document, path);
+}
+
+mesh::PolygonSoup read_x3d_tree(const pugi::xml_document& document, const std::filesystem::path& path) {
     return soup_of(Reader(document, path.string()).run(), path);
 }
 

@@ -22,9 +22,8 @@ std::string ink_layer(const std::string& ink);
 /// - `.pdf` (PDF 1.6): all pages in one file. Cut lines are hairlines of 0.25 points in the separation `CutContour`
 ///   (100 % magenta on screens), which overprint. Registration marks, numbers and scale bar are of the separation
 ///   `All`, on every plate. Pictures carry the ICC profile of the sheet (sRGB by default), with the coverage of paint
-///   as soft mask; with plates each pigment is a
-///   separation of its own name, laid over the others (multiplied). Areas of one ink are filled paths, of the plate's
-///   separation if there are plates.
+///   as soft mask; with plates each pigment is a separation of its own name, laid over the others (multiplied). Areas
+///   of one ink are filled paths, of the plate's separation if there are plates.
 /// - `.svg`: a file for each page, pictures as PNG inside; cut lines in a layer `CutContour`, areas of one
 ///   ink in a layer `Ink NAME` each.
 /// - `.dxf` (R12, ASCII, millimetres): a file for each page of film, closed polylines on the layer `CutContour`, marks
