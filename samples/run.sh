@@ -78,6 +78,11 @@ paint plum vase vase-plum "" --view 0,4 --size 740x740 --zoom 3 --target 0,-60,1
   --view 0,4 --size 740x740 --zoom 3 --target 0,-60,115
 oiiotool "$out/plum-blue.png" "$out/plum.png" --create 1480x740 3 --paste +0+0 --paste +740+0 -d uint8 -o "$out/vase-plum.png"
 
+say "sheets of film: a water-slide decal for the plate, a wrap for the car's pinstripe, the plum's plates"
+"$tuft" decals "$out/plate.tuft" -o "$out/plate-decal.pdf" --page A3 --plates --outlines
+"$tuft" decals "$out/car.tuft" -o "$out/pinstripe-wrap.pdf" --max-strain 15% --bleed 8mm --page roll --guide "$out/pinstripe-guide"
+"$tuft" decals "$out/plum.tuft" -o "$out/plum-plates.pdf" --plates
+
 # By brushes of trades: petals of two inks, bamboo by a flat, blue-and-white, a sword's pinstripe.
 paint one-stroke plate one-stroke "" --view 0,70 --zoom 2 --size 740x460
 paint flat-bamboo sheet flat-bamboo "--substrate rice-paper" --view 0,89 --size 740x460 --zoom 1.3

@@ -167,20 +167,73 @@ PrintSurface extend(const FilmMesh& film, const Panel& panel, const std::functio
     return surface;
 }
 
+namespace {
+
+std::optional<ModelPoint> locate_in(const PrintSurface& surface, std::size_t t, const Vec2& p) {
+    const auto& f = surface.faces[t];
+    const Vec2 a = surface.flat[f[0]], x = surface.flat[f[1]] - a, y = surface.flat[f[2]] - a, d = p - a;
+    const double det = x.x * y.y - x.y * y.x;
+    if (!(det > 0)) return std::nullopt;
+    const double b = (d.x * y.y - d.y * y.x) / det, c = (x.x * d.y - x.y * d.x) / det;
+    if (b < kInside || c < kInside || 1 - b - c < kInside) return std::nullopt;
+    ModelPoint point{surface.source[t], {}};
+    for (std::size_t k = 0; k < 3; ++k)
+        point.weights[k] =
+            (1 - b - c) * surface.weights[t][0][k] + b * surface.weights[t][1][k] + c * surface.weights[t][2][k];
+    return point;
+}
+
+}  // namespace
+
 std::optional<ModelPoint> locate(const PrintSurface& surface, const Vec2& p) {
-    for (std::size_t t = 0; t < surface.faces.size(); ++t) {
-        const auto& f = surface.faces[t];
-        const Vec2 a = surface.flat[f[0]], x = surface.flat[f[1]] - a, y = surface.flat[f[2]] - a, d = p - a;
-        const double det = x.x * y.y - x.y * y.x;
-        if (!(det > 0)) continue;
-        const double b = (d.x * y.y - d.y * y.x) / det, c = (x.x * d.y - x.y * d.x) / det;
-        if (b < kInside || c < kInside || 1 - b - c < kInside) continue;
-        ModelPoint point{surface.source[t], {}};
-        for (std::size_t k = 0; k < 3; ++k)
-            point.weights[k] =
-                (1 - b - c) * surface.weights[t][0][k] + b * surface.weights[t][1][k] + c * surface.weights[t][2][k];
-        return point;
+    for (std::size_t t = 0; t < surface.faces.size(); ++t)
+        if (const auto point = locate_in(surface, t, p)) return point;
+    return std::nullopt;
+}
+
+SurfaceLocator::SurfaceLocator(const PrintSurface& surface) : surface_(surface) {
+    if (surface.flat.empty()) {
+        start_.assign(2, 0);
+        return;
     }
+    Vec2 hi = lo_ = surface.flat[0];
+    for (const Vec2& p : surface.flat) lo_ = glm::min(lo_, p), hi = glm::max(hi, p);
+    const Vec2 size = hi - lo_;
+    const auto n = static_cast<double>(std::max<std::size_t>(surface.faces.size(), 1));
+    cell_ = std::max({std::sqrt(size.x * size.y / n), std::max(size.x, size.y) / n, 1e-9});
+    width_ = static_cast<std::size_t>(size.x / cell_) + 1;
+    height_ = static_cast<std::size_t>(size.y / cell_) + 1;
+    // A point that counts as inside may lie a little off its triangle.
+    const auto each_cell = [&](std::size_t t, auto&& use) {
+        const auto& f = surface.faces[t];
+        const Vec2 a = surface.flat[f[0]], b = surface.flat[f[1]], c = surface.flat[f[2]];
+        const Vec2 from = glm::min(a, glm::min(b, c)), to = glm::max(a, glm::max(b, c));
+        const Vec2 around = -2 * kInside * (to - from);
+        const std::size_t first = cell_of(from.x - around.x, from.y - around.y);
+        const std::size_t last = cell_of(to.x + around.x, to.y + around.y);
+        for (std::size_t y = first / width_; y <= last / width_; ++y)
+            for (std::size_t x = first % width_; x <= last % width_; ++x) use(y * width_ + x);
+    };
+    start_.assign(width_ * height_ + 1, 0);
+    for (std::size_t t = 0; t < surface.faces.size(); ++t) each_cell(t, [&](std::size_t i) { ++start_[i + 1]; });
+    std::partial_sum(start_.begin(), start_.end(), start_.begin());
+    triangles_.resize(start_.back());
+    std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
+    for (std::size_t t = 0; t < surface.faces.size(); ++t)
+        each_cell(t, [&](std::size_t i) { triangles_[next[i]++] = static_cast<std::uint32_t>(t); });
+}
+
+std::size_t SurfaceLocator::cell_of(double x, double y) const {
+    const auto along = [&](double at, std::size_t n) {
+        return static_cast<std::size_t>(std::clamp(at / cell_, 0.0, static_cast<double>(n - 1)));
+    };
+    return along(y - lo_.y, height_) * width_ + along(x - lo_.x, width_);
+}
+
+std::optional<ModelPoint> SurfaceLocator::locate(const Vec2& p) const {
+    const std::size_t i = cell_of(p.x, p.y);
+    for (std::size_t k = start_[i]; k < start_[i + 1]; ++k)
+        if (const auto point = locate_in(surface_, triangles_[k], p)) return point;
     return std::nullopt;
 }
 

@@ -36,6 +36,23 @@ struct ModelPoint {
 /// there is none. Cost: all triangles are tested.
 std::optional<ModelPoint> locate(const PrintSurface& surface, const Vec2& p);
 
+/// `locate` for many points: triangles in a grid with about as many cells. Finds the same point.
+class SurfaceLocator {
+  public:
+    /// `surface` must outlive it.
+    explicit SurfaceLocator(const PrintSurface& surface);
+    std::optional<ModelPoint> locate(const Vec2& p) const;
+
+  private:
+    std::size_t cell_of(double x, double y) const;
+
+    const PrintSurface& surface_;
+    Vec2 lo_{0};
+    double cell_ = 1;  // metres
+    std::size_t width_ = 1, height_ = 1;
+    std::vector<std::uint32_t> start_, triangles_;  // those of cell i from start_[i] to start_[i + 1], in order
+};
+
 /// Returns the direction on the sheet of a direction of the model: the mean over a panel of its tangential part, laid
 /// flat. Its length is at most 1; 0 where the panel is normal to it.
 Vec2 flat_direction(const atlas::ChartMesh& chart, std::span<const Vec2> flat, const Vec3& direction);

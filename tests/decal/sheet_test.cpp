@@ -106,6 +106,10 @@ TEST_F(SheetOfFormula, RoundTripFromModelToSheetAndBack) {
         found.push_back(centroid(made.pages[0].prints[0], near, 3 * kMm));
         const auto back = locate(surface, piece.placement.inverse(found.back()));
         ASSERT_TRUE(back);
+        const auto again = SurfaceLocator(surface).locate(piece.placement.inverse(found.back()));
+        ASSERT_TRUE(again);
+        EXPECT_EQ(again->triangle, back->triangle);
+        EXPECT_EQ(again->weights, back->weights);
         const Vec3 p = point_at(model, back->triangle, back->weights);
         const Vec3 truth(kRadius * std::cos(dot.centre.x / kRadius), kRadius * std::sin(dot.centre.x / kRadius),
                          dot.centre.y);

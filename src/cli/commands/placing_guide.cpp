@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "cli/steps/picture_overlay.h"
 #include "core/error.h"
@@ -42,7 +43,8 @@ struct PlacedPiece {
 
 class PieceOnModel {
   public:
-    PieceOnModel(const mesh::TriangleMesh& mesh, const decal::PrintSurface& surface) : mesh_(mesh), surface_(surface) {}
+    PieceOnModel(const mesh::TriangleMesh& mesh, const decal::SurfaceLocator& surface)
+        : mesh_(mesh), surface_(surface) {}
 
     /// The points of a line of the panel's plane, in parts where it leaves the surface.
     std::vector<SurfacePath> lift(const std::vector<Vec2>& line) const {
@@ -51,7 +53,7 @@ class PieceOnModel {
             const int n = std::max(1, static_cast<int>(std::ceil(glm::length(line[i + 1] - line[i]) / kSpacing)));
             for (int k = i == 0 ? 0 : 1; k <= n; ++k) {
                 const Vec2 p = line[i] + (static_cast<double>(k) / n) * (line[i + 1] - line[i]);
-                if (const auto at = decal::locate(surface_, p)) {
+                if (const auto at = surface_.locate(p)) {
                     paths.back().points.push_back(decal::point_at(mesh_, at->triangle, at->weights));
                     paths.back().normals.push_back(mesh::face_normal(mesh_, at->triangle));
                 } else if (!paths.back().points.empty()) {
@@ -65,7 +67,7 @@ class PieceOnModel {
 
   private:
     const mesh::TriangleMesh& mesh_;
-    const decal::PrintSurface& surface_;
+    const decal::SurfaceLocator& surface_;
 };
 
 /// The panel's point from which the arrow starts: that of its own triangles nearest to the middle of the film.
@@ -83,9 +85,9 @@ Vec2 middle_of(const decal::PrintSurface& surface, const decal::Region& film) {
     return best;
 }
 
-PlacedPiece place_on_model(const mesh::TriangleMesh& mesh, const decal::Sheet& sheet, const decal::Piece& piece) {
-    const decal::PrintSurface& surface = sheet.surfaces[piece.surface];
-    const PieceOnModel on(mesh, surface);
+PlacedPiece place_on_model(const mesh::TriangleMesh& mesh, const decal::PrintSurface& surface,
+                           const decal::SurfaceLocator& locator, const decal::Piece& piece) {
+    const PieceOnModel on(mesh, locator);
     PlacedPiece placed;
     placed.number = piece.number;
     Box box;
@@ -99,7 +101,7 @@ PlacedPiece place_on_model(const mesh::TriangleMesh& mesh, const decal::Sheet& s
     const Vec2 middle = middle_of(surface, piece.film);
     const Vec2 size = decal::box_of(piece.film).size();
     placed.size = glm::length(size);
-    if (const auto at = decal::locate(surface, middle)) {
+    if (const auto at = locator.locate(middle)) {
         placed.centre = decal::point_at(mesh, at->triangle, at->weights);
         placed.normal = mesh::face_normal(mesh, at->triangle);
     }
@@ -254,7 +256,12 @@ std::string lines_text(const GuideRequest& request, const std::vector<PlacedPiec
 std::vector<fs::path> write_placing_guide(const fs::path& folder, const GuideRequest& request, Console& console) {
     const mesh::TriangleMesh& mesh = *request.project.model.mesh;
     std::vector<PlacedPiece> pieces;
-    for (const decal::Piece& piece : request.sheet.pieces) pieces.push_back(place_on_model(mesh, request.sheet, piece));
+    std::map<std::size_t, decal::SurfaceLocator> locators;
+    for (const decal::Piece& piece : request.sheet.pieces) {
+        const decal::PrintSurface& surface = request.sheet.surfaces[piece.surface];
+        const auto at = locators.try_emplace(piece.surface, surface).first;
+        pieces.push_back(place_on_model(mesh, surface, at->second, piece));
+    }
     std::error_code ec;
     fs::create_directory(folder, ec);
     if (!fs::is_directory(folder, ec)) throw Error(folder.string(), "the folder cannot be made");

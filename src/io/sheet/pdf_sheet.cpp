@@ -123,8 +123,12 @@ class PdfSheet {
                             image.width * image.pixel * kPointsPerMetre, image.height * image.pixel * kPointsPerMetre,
                             image.origin.x * kPointsPerMetre, image.origin.y * kPointsPerMetre, name);
         };
-        for (std::size_t i = 0; i < image.plates.size(); ++i)
-            place("/Plate gs ", picture(image, image.plates[i], PdfVariant(plates_[i]->Reference())));
+        for (std::size_t i = 0; i < image.plates.size(); ++i) {
+            PdfObject* plate = picture(image, image.plates[i], PdfVariant(plates_[i]->Reference()));
+            // Without ink nothing is drawn: viewers that round each product down would show a grey box of eight plates.
+            plate->GetDictionary().AddKey("Mask", numbers({0, 0}));
+            place("/Plate gs ", plate);
+        }
         if (!image.plates.empty()) return;
         PdfObject* colour = picture(image, image.rgb, PdfVariant(rgb_->Reference()));
         PdfObject* mask = picture(image, image.alpha, PdfVariant(PdfName("DeviceGray")));
