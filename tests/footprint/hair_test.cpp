@@ -468,5 +468,45 @@ TEST(Hair, HardlyDryHairOfAFilbertIsClosed) {
     EXPECT_NEAR(area(0.5), 0.5 * (area(0) + area(1)), 0.005 * closed) << "levels of 1/255";
 }
 
+/// A flat whose ink is on its lower side stands up as it is lifted, and over to the other side by a little: the hair on
+/// which it lay goes on giving ink, not all of the other side at once.
+TEST(Hair, ARowThatStandsKeepsTheSideOnWhichItLay) {
+    brush::Tuft tuft = brush::make_tuft(brush::load_preset("flat-12"), 5);
+    const brush::ContactPlane ground;
+    const double length = tuft.preset.length;
+    brush::TuftState state;
+    for (int i = 0; i <= 40; ++i)
+        state = brush::step(tuft, {.position = {0, 0.5e-3 * i, length * (1 - 0.2 * std::min(1.0, i / 20.0))}},
+                            std::span(&ground, 1), 3e-3);
+    Recycled<Trail> trails = find_trails(state, kFlat, {}, length, 1e-4);
+    const auto branches = static_cast<int>(state.branches.size());
+    Recycled<signed char> sides;
+    keep_sides(trails, sides);
+    ASSERT_EQ(sides.size(), static_cast<std::size_t>(branches));
+    Recycled<double> wet(tuft.bundles.place.size(), 0);
+    for (std::size_t k = 0; k < wet.size(); ++k) {
+        const brush::BranchPlace at = brush::in_branch(tuft.bundles, tuft.bundles.place[k], branches);
+        if (sides[at.branch] * at.place.y < 0) wet[k] = 0.6;
+    }
+    const Recycled<Outline> outlines = outlines_of(trails, 20);
+    const auto area = [&](std::span<const signed char> kept) {
+        HairInk ink{wet, 0, {0, 1}};
+        ink.sides = kept;
+        return area_of(draw_hair_marks({trails, outlines, tuft.bundles, branches}, ink, kPlane).footprint);
+    };
+    const double lying = area({});
+    ASSERT_GT(lying, 0);
+    EXPECT_EQ(area(sides), lying);
+    for (Trail& trail : trails)
+        for (Cut& cut : trail.cuts) cut.e.z *= -0.1, cut.m.z *= -0.1;
+    keep_sides(trails, sides);
+    EXPECT_GT(area(sides), 0.6 * lying) << "places on the thickness are others";
+    EXPECT_LT(area({}), 0.3 * lying) << "bundles reach over the middle";
+    for (Trail& trail : trails)
+        for (Cut& cut : trail.cuts) cut.e.z *= 9, cut.m.z *= 9;
+    keep_sides(trails, sides);
+    EXPECT_LT(area(sides), 0.3 * lying) << "laid over";
+}
+
 }  // namespace
 }  // namespace tuft::footprint

@@ -36,6 +36,7 @@ constexpr double kBridge = 0.5;        // spacings that ink bridges from one bri
 constexpr double kLeastContact = 0.1;  // fraction of its length on the surface that the driest bristle touches with
 constexpr double kSameEnd = 0.01;      // of the length
 constexpr double kLeastLength = 1e-6;  // of the length, that hair touches with at least
+constexpr double kStands = 0.3;        // height of a strip's thickness over itself up to which hair stands: on no side
 constexpr double kBeyond = 0.5;        // widest half width that the outermost hair's ink may reach further
 
 /// What of a section says which of its hair is on the surface.
@@ -172,9 +173,9 @@ double swept_share(const TransverseLength& across, double x, const HairInk& ink)
     return ink.press_share * smooth_step((off - kTapers) / (kAside - kTapers));
 }
 
-/// Bristles side by side into bands, in a section of half width `a` metres.
+/// Bristles side by side into bands, in a section of half width `a` metres. `strip`: of a row.
 Recycled<Strand> strands_of(Recycled<LowerBristle>& lower, const brush::Bundles& bundles, const HairInk& ink, double a,
-                            const LyingHair& lying) {
+                            const LyingHair& lying, bool strip) {
     Recycled<Strand> strands;
     std::sort(lower.begin(), lower.end(), [](const LowerBristle& p, const LowerBristle& q) {
         return p.x != q.x ? p.x < q.x : p.bristle < q.bristle;
@@ -184,7 +185,7 @@ Recycled<Strand> strands_of(Recycled<LowerBristle>& lower, const brush::Bundles&
     double bridge_before = 0;
     for (std::size_t i = 0; i < lower.size(); ++i) {
         const brush::Bristle& b = *lower[i].bristle;
-        const double aside = ink.press_share > 0 ? swept_share(lying.across, lower[i].x, ink) : 0;
+        const double aside = ink.press_share > 0 && !strip ? swept_share(lying.across, lower[i].x, ink) : 0;
         const double wet = wet_of(b), own = breaks_at(bundles, b, ink.travel), breaks = own + aside * (1 - own);
         const double active = std::clamp((wet - std::min(breaks, 1 - kThinning)) / kThinning, 0.0, 1.0);
         if (!(active > 0)) continue;
@@ -424,9 +425,21 @@ Recycled<HairContactPoint> hair_contact_points(std::span<const Trail> trails, co
 
 namespace {
 
-/// Bristles of the lower half in a part of a trail. `places`: of all bristles.
+/// Height of the thickness of a part of a strip over itself, along its hair: sine of its lean, −1 to 1.
+double lean_of_strip(const TrailPart& part) {
+    double height = 0, all = 0;
+    for (std::size_t i = part.begin; i + 1 < part.end; ++i) {
+        const double length = std::abs(part.trail.along[i + 1] - part.trail.along[i]);
+        const Vec3 thick = part.trail.cuts[i].thick();
+        height += length * thick.z;
+        all += length * glm::length(thick);
+    }
+    return all > 0 ? height / all : 0;
+}
+
+/// Bristles of the lower half in a part of a trail. `places`: of all bristles; `sides`: see HairInk.
 Recycled<LowerBristle> find_lower_bristles(const TrailPart& part, const brush::Bundles& bundles,
-                                           std::span<const BristlePlace> places) {
+                                           std::span<const BristlePlace> places, std::span<const signed char> sides) {
     const Trail& trail = part.trail;
     // Heights over the middle, of all sections together: one of them would be another at every stamp, and hair that
     // sticks together lies on the same side.
@@ -436,6 +449,8 @@ Recycled<LowerBristle> find_lower_bristles(const TrailPart& part, const brush::B
         const Vec2 own = trail.strip ? Vec2{0, cut.thick().z} : Vec2{cut.a * cut.e.z, cut.b * cut.m.z};
         height += std::abs(trail.along[i + 1] - trail.along[i]) * own;
     }
+    const auto branch = static_cast<std::size_t>(trail.branch);
+    if (trail.strip && branch < sides.size() && sides[branch] != 0) height = {0, sides[branch]};
     Recycled<LowerBristle> lower;
     for (std::size_t k = 0; k < places.size(); ++k) {
         const Vec2* at = places[k].at(trail, part.begin);
@@ -445,6 +460,16 @@ Recycled<LowerBristle> find_lower_bristles(const TrailPart& part, const brush::B
 }
 
 }  // namespace
+
+void keep_sides(std::span<const Trail> trails, Recycled<signed char>& sides) {
+    for (const Trail& trail : trails) {
+        if (!trail.strip) continue;
+        const auto branch = static_cast<std::size_t>(trail.branch);
+        if (sides.size() <= branch) sides.resize(branch + 1, 0);
+        const double lean = lean_of_strip({trail, 0, trail.cuts.size()});
+        if (sides[branch] == 0 || std::abs(lean) > kStands) sides[branch] = lean > 0 ? 1 : -1;
+    }
+}
 
 HairMarks draw_hair_marks(const TouchingHair& hair, const HairInk& ink, const PicturePlane& plane) {
     HairMarks result{rasterise(hair.outlines, plane, hair.edge), 0};
@@ -459,9 +484,10 @@ HairMarks draw_hair_marks(const TouchingHair& hair, const HairInk& ink, const Pi
         if (part.begin >= part.end) return;
         double widest = 0;
         for (std::size_t i = part.begin; i < part.end; ++i) widest = std::max(widest, part.trail.cuts[i].a);
-        Recycled<LowerBristle> lower = find_lower_bristles(part, hair.bundles, places);
+        Recycled<LowerBristle> lower = find_lower_bristles(part, hair.bundles, places, ink.sides);
         StrandPen pen(part, picture);
-        for (const Strand& s : strands_of(lower, hair.bundles, ink, widest, LyingHair(part, ink))) pen.draw(s);
+        for (const Strand& s : strands_of(lower, hair.bundles, ink, widest, LyingHair(part, ink), part.trail.strip))
+            pen.draw(s);
     };
     for (const Trail& trail : hair.trails) {
         // The bands of both parts meet between two cuts.

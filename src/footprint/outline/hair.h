@@ -56,7 +56,13 @@ struct HairInk {
     double sine_to_course = 0;
     /// 0–1: part of the picture that is single hairs; the rest is closed, also where ink spans hairs of other lengths.
     double apart = 1;
+    std::span<const signed char> sides = {};  ///< of `keep_sides`; empty: where each section is
 };
+
+/// Keeps which broad side of each strip faces away from the surface: by branch, the sign of the height of its
+/// thickness, 0 for none yet. Hair that stands keeps the side on which it lay: the hair of the other one would leave a
+/// bar of its own as a stroke ends.
+void keep_sides(std::span<const Trail> trails, Recycled<signed char>& sides);
 
 /// Returns the film of a bundle over the film that closes its gaps,
 ///
@@ -97,7 +103,8 @@ struct HairMarks {
 /// of what its need lacks to 1. ψ is the angle between the directions of hair and tuft. φ is the larger angle to
 /// the course of the hair's direction and of the tuft's motion over its last millimetre. χ is the angle between the
 /// hair's motion and the hair itself. S is the smooth step. Hair that trails behind the hand round a curve leaves
-/// the course along itself, and hair draws together where the stroke ends: both continue to the end. While the hand
+/// the course along itself, and hair draws together where the stroke ends: both continue to the end. So does the hair
+/// of a row, each spine of which goes its own way. While the hand
 /// presses or lifts, hair touches with at most
 ///
 ///     max(1, (1 − 0.75 press_share) wet / (2 (1 − wet)²))

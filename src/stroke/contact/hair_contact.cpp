@@ -96,7 +96,8 @@ void HairContact::draw_hairs(Stamp& stamp, const footprint::TouchingHair& hair, 
         .press_share = motion.press_share,
         .course = of_hand,
         .sine_to_course = lengths > 0 ? std::abs(of_hand.x * of_hair.y - of_hand.y * of_hair.x) / lengths : 0,
-        .apart = apart};
+        .apart = apart,
+        .sides = sides_};
     footprint::HairMarks marks = footprint::draw_hair_marks(hair, ink, {frame, contact.triangle, options_.closed.cell});
     stamp.footprint = std::move(marks.footprint);
     stamp.by_hair = true;
@@ -211,6 +212,8 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
         footprint::change_frame(previous_, previous_frame_, contact.frame);
         uncovered = trails;
     }
+    if (!motion.touching) sides_.clear();
+    footprint::keep_sides(trails, sides_);
     footprint::cover_upright_hair(trails, shape.upright, contact.frame, kSkinFilm);
     Recycled<footprint::Trail> drawn;  // with what leapt since the pose before
     if (by_hair_) {

@@ -79,7 +79,8 @@ class HairContact {
     footprint::HairTracks tracks_;         // of the hair on the surface
     Recycled<footprint::Trail> previous_;  // trails of the last stamp by hair, in `previous_frame_`
     Frame previous_frame_;
-    HairTone tone_;  // with `tones`
+    Recycled<signed char> sides_;  // see footprint::keep_sides
+    HairTone tone_;                // with `tones`
     bool by_hair_ = false;
     double closed_area_ = 0;
     Vec2 axis_{1, 0};
