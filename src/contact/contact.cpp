@@ -541,8 +541,8 @@ Result take_step(brush::Tuft& tuft, const mesh::SurfaceQuery& surface, Memory& m
     const Options& options = input.options;
     Recycled<Vec3> nodes = brush::predicted_nodes(tuft, input.pose);
     // A wide ferrule reaches half its width to the sides; its nodes lie within that of each other's.
-    const double thick =
-        1.2 * preset.radius * std::max(1.0, preset.flatten_max) + 0.5 * preset.width / std::max(1, preset.spines);
+    const double thick = 1.2 * preset.radius * std::max(1.0, preset.flatten_max) +
+                         0.5 * preset.width / static_cast<double>(std::max<std::size_t>(1, tuft.spines.size()));
     const bool near = overlap(obb_of(nodes, thick + options.tolerance), obb_of(surface.mesh().bounds));
 
     Step w{surface, input.pose, options, {}, preset.radius, ferrule_pad(preset), 0, {}, std::move(nodes)};

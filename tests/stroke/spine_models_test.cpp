@@ -13,7 +13,14 @@ namespace {
 
 class SpineModels : public testing::TestWithParam<brush::SpineMethod> {};
 
-TEST_P(SpineModels, PaintWithEveryBrushOfOneSpineAndReplayToTheSameBits) {
+/// Whether the paper of a model has a head of this form.
+bool knows(brush::SpineMethod spine, const brush::Preset& p) {
+    if (brush::is_foam(p) || p.geometry) return false;
+    const bool flat = brush::has_broad_side(p) && p.splay == 0 && p.slant == 0;
+    return p.spines == 1 || (flat && spine != brush::SpineMethod::macro);
+}
+
+TEST_P(SpineModels, PaintWithEveryBrushOfTheirFormsAndReplayToTheSameBits) {
     const Model model = sheet({}, 384);
     for (const std::string& name : brush::list_presets()) {
         const brush::Preset preset = brush::load_preset(name);
@@ -21,11 +28,12 @@ TEST_P(SpineModels, PaintWithEveryBrushOfOneSpineAndReplayToTheSameBits) {
         stroke.settings.spine = GetParam();
         set_thread_count(1);
         Document painting(model);
-        if (preset.spines > 1 || brush::is_foam(preset) || preset.geometry) {  // the papers know one spine, of hair
+        if (!knows(GetParam(), preset)) {
             EXPECT_THROW(painting.paint(stroke), Error) << name;
             EXPECT_TRUE(painting.journal().empty()) << name;
             continue;
         }
+        if (preset.spines > 1 && name != "flat-12" && name != "filbert-12") continue;  // bent in tests/brush
         const StrokeReport report = painting.paint(stroke);
         EXPECT_TRUE(report.touched()) << name;
         EXPECT_GT(report.ink_given, 0) << name;
@@ -35,6 +43,7 @@ TEST_P(SpineModels, PaintWithEveryBrushOfOneSpineAndReplayToTheSameBits) {
         Document again(model);
         again.replay(painting.journal().entries());
         EXPECT_EQ(again.layers().canvas().hash(), painting.layers().canvas().hash()) << name;
+        if (preset.spines > 1) continue;  // the rod's five spines take seconds
         Document other(model);
         stroke.settings.spine = brush::SpineMethod::rod;
         other.paint(stroke);

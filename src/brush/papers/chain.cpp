@@ -30,6 +30,12 @@ constexpr double kUpright = 0.9999;                       ///< cosine
 constexpr double kCentroid = 4 / (3 * std::numbers::pi);  ///< of a half disc over its radius
 constexpr int kLatticeDegree = 8;                         ///< [X]
 
+/// Half-width at rest of a wide ferrule's hair at the part u of its length: that of the mouth where the hair reaches.
+double rest_half_width(const Preset& p, double u) {
+    const double past = p.toe > 0 ? std::clamp(1 - (1 - u) * p.length / p.toe, 0.0, 1.0) : 0;
+    return std::max(0.5 * p.width * std::sqrt(1 - past * past), p.tip_radius);
+}
+
 /// One chain with what it keeps from step to step, in units of L and B0 over the number of spines.
 struct OneSpine {
     Vec3 offset{0};                ///< m, of its root, ferrule frame
@@ -66,6 +72,8 @@ class ChainModel final : public SpineModel {
     ChainSolution solve(OneSpine& spine, const SpineModelInput& input) const;
     void add_forces(const ChainSolution& solution, const OneSpine& spine, TuftState& state) const;
     double moment_of(std::size_t joint) const;
+    /// Of half the mouth, over its half-width: a half disc, or half of a flat.
+    double centroid() const { return has_broad_side(preset_) ? 0.5 : kCentroid; }
     double least_height(std::size_t node) const {
         return node + 1 < minor_.size() ? options_.effective_radius * minor_[node] : 0;
     }
@@ -77,6 +85,7 @@ class ChainModel final : public SpineModel {
     ChainOptions options_;
     ChainSpine chain_;
     std::vector<double> at_, radius_, minor_;  ///< [n+1] m: arc length, rest radius, minor radius of the last step
+    std::vector<double> half_width_;           ///< [n+1] m at rest: of a round tuft the radius
     std::vector<double> flat_;                 ///< [n] radians, of a joint of hair bent evenly from upright to flat
     std::vector<OneSpine> spines_;
     std::array<std::vector<double>, 2> lateral_;  ///< [n+1] m, d of the last step: along e, against it
@@ -92,6 +101,7 @@ ChainModel::ChainModel(const Preset& preset, const ChainOptions& options) : pres
     for (std::size_t i = 0; i <= lengths.size(); ++i) {
         at_.push_back(s * preset.length);
         radius_.push_back(rest_radius(preset, s));
+        half_width_.push_back(has_broad_side(preset) ? rest_half_width(preset, s) : radius_.back());
         if (i == lengths.size()) break;
         const double width = i > 0 ? 0.5 * (lengths[i - 1] + lengths[i]) : 0.5 * lengths[0];
         flat_.push_back(width * kFlatCurvature);
@@ -99,8 +109,8 @@ ChainModel::ChainModel(const Preset& preset, const ChainOptions& options) : pres
     }
     spines_.resize(options.spines == 2 ? 2 : 1);
     if (spines_.size() == 2) {
-        spines_[0].offset = {-kCentroid * radius_[0], 0, 0};
-        spines_[1].offset = {kCentroid * radius_[0], 0, 0};
+        spines_[0].offset = {-centroid() * half_width_[0], 0, 0};
+        spines_[1].offset = {centroid() * half_width_[0], 0, 0};
     }
     straighten({});
 }
@@ -383,8 +393,8 @@ void ChainModel::carry_with_lattice(Recycled<Section>& sections) const {
         const Section& s = sections[count - 1 - i];
         at.push_back(at_[i] / preset_.length);
         for (std::size_t k = 0; k < 2; ++k) {
-            // At rest the spines are at the centroids of two halves of the root's disc, the lattice is its square.
-            const double out = radius_[0] * (1 - kCentroid);
+            // At rest the spines are at the centroids of two halves of the root's section, the lattice is its square.
+            const double out = half_width_[0] * (1 - centroid());
             outward[k].push_back((k == 0 ? -out : out) * s.e);
             across[k].push_back(radius_[0] * s.m);
         }
@@ -394,11 +404,11 @@ void ChainModel::carry_with_lattice(Recycled<Section>& sections) const {
     const Lattice lattice = span_lattice(spines, kLatticeDegree);
     for (std::size_t i = 0; i < count; ++i) {
         Section& s = sections[count - 1 - i];
-        const double half = 0.5 * radius_[i] / radius_[0], r = radius_[i];
+        const double wide = half_width_[i], half = 0.5 * wide / half_width_[0];
         s.centre = lattice_point(lattice, 0.5, 0.5, at[i]);
         const Vec3 e = lattice_point(lattice, 0.5 + half, 0.5, at[i]) - lattice_point(lattice, 0.5 - half, 0.5, at[i]);
-        s.a = std::clamp(0.5 * glm::dot(e, s.e), kLeastWidth * r, preset_.flatten_max * r);
-        s.b = r * r / s.a;
+        s.a = std::clamp(0.5 * glm::dot(e, s.e), kLeastWidth * wide, preset_.flatten_max * wide);
+        s.b = radius_[i] * wide / s.a;
     }
 }
 

@@ -27,7 +27,8 @@
 ///    ellipse of the mean major radius with its centre midway, the same area π r².
 ///
 /// Two spines (`spines` 2) each have half of the hair, at the centroids of the two halves of the ferrule, and drive
-/// one side of a lattice (lattice.h), which carries the sections. A preset's tuft is round and has one.
+/// one side of a lattice (lattice.h), which carries the sections. A flat and a filbert have two; the others are round
+/// and have one.
 ///
 /// B(ξ), μ, κ_f, C_η, plastic_share and k_c are the preset's. Energy: `lost` holds the friction and what the change of
 /// bend costs; what ρ takes away between steps is in no term, so the balance with the hand's work is not kept.

@@ -267,8 +267,13 @@ void check_preset(const Preset& p, const std::string& source) {
     if (std::max(p.toe, p.slant) > 0.8 * p.length) {
         throw Error(source, "the hair at the ferrule's edge must be a fifth of 'shape.length_mm' or longer");
     }
-    if (p.spines > 1 && p.spine != SpineMethod::rod) {
-        throw Error(source, "several spines need 'bending.spine' = \"rod\"");
+    // Baxter has two trusses for a flat and four for a filbert, Van Laerhoven two chains with a lattice between.
+    const bool flat = has_broad_side(p) && p.splay == 0 && p.slant == 0;
+    const bool known = flat && (p.spine == SpineMethod::chain || p.spine == SpineMethod::truss);
+    if (p.spines > 1 && p.spine != SpineMethod::rod && !known) {
+        throw Error(
+            source,
+            "several spines need 'bending.spine' = \"rod\", or those of a flat or filbert \"chain\" or \"truss\"");
     }
     if (p.merge_at > p.split_at) {
         throw Error(source, "'split.merge_at' must not exceed 'split.at'");

@@ -106,7 +106,9 @@ Bundles make_bundles(const Preset& p, std::uint64_t seed) {
     Bundles out;
     out.seed = seed;
     const bool broad = has_broad_side(p);
-    if (broad) {
+    if (has_one_skin(p)) {
+        out.strips.push_back({-1, 1});
+    } else if (broad) {
         for (const FerruleSpine& spine : ferrule_spines(p)) out.strips.push_back({spine.from, spine.to});
     } else if (p.spines > 1) {
         out.around = p.spines - 1;

@@ -118,6 +118,12 @@ std::vector<FerruleSpine> ferrule_spines(const Preset& p) {
     return out;
 }
 
+FerruleSpine whole_mouth(const Preset& p) {
+    double area = 0;
+    for (const FerruleSpine& spine : ferrule_spines(p)) area += spine.pitch * spine.thick;
+    return {.pitch = p.width, .thick = area / p.width};
+}
+
 Recycled<Vec2> strip_corners(const Preset& p, const FerruleSpine& spine) {
     constexpr double kEven = 0.01;  // of the thickness, change over a strip that is none
     constexpr int kCuts = 6;

@@ -46,6 +46,14 @@ inline bool can_be_turned(const Preset& preset) {
 /// Returns the spines from −x to +x; one that holds all for a round tuft.
 std::vector<FerruleSpine> ferrule_spines(const Preset& preset);
 
+/// Returns true for a wide ferrule that a model of the papers bends: one skin over all of it, whatever K is.
+inline bool has_one_skin(const Preset& preset) {
+    return has_broad_side(preset) && preset.spine != SpineMethod::rod;
+}
+
+/// Returns the strip that is the whole mouth of a wide ferrule.
+FerruleSpine whole_mouth(const Preset& preset);
+
 /// Returns the corners of a spine's part of the mouth, convex, anticlockwise, about the spine and over the semi-axes of
 /// its ellipse at rest; none for a disc. Error of its width in any direction: 0.5 %.
 Recycled<Vec2> strip_corners(const Preset& preset, const FerruleSpine& spine);

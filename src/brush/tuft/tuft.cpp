@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "brush/tuft/ferrule.h"
 #include "brush/tuft/foam.h"
@@ -47,11 +48,28 @@ bool reaches(const TuftState& state, std::span<const ContactPlane> planes) {
     return false;
 }
 
+/// The skin of a wide ferrule fills the ferrule's own form. Semi-axes of a model are half its width and thickness;
+/// those of a strip are of an ellipse of its area.
+void fill_mouth(const Preset& p, TuftState& state) {
+    if (!has_one_skin(p)) return;
+    const FerruleSpine mouth = whole_mouth(p);
+    const double root_pi = std::sqrt(std::numbers::pi);
+    state.wide = state.strips = true;
+    for (Branch& branch : state.branches) {
+        branch.strip = strip_corners(p, mouth);
+        for (Section& s : branch.sections) {
+            s.a *= 2 / root_pi;
+            s.b *= mouth.thick / (p.radius * root_pi);
+        }
+    }
+}
+
 /// Bends the tuft by its model of the papers, and takes its nodes over into the spine.
 TuftState step_model(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt) {
     const double length = tuft.preset.length;
     TuftState state = tuft.model->step({pose, planes, std::isfinite(dt) ? std::max(0.0, dt) : 0, tuft.wetness});
     state.touching = state.normal_force > 0 || reaches(state, planes);
+    fill_mouth(tuft.preset, state);
     rod::Memory& m = tuft.trunk().memory;
     m.clamp = clamp_of(tuft.preset, pose);
     const Recycled<Vec3> nodes = tuft.model->nodes();
@@ -77,7 +95,7 @@ Tuft make_tuft(const Preset& preset, std::uint64_t seed) {
     Tuft tuft;
     tuft.preset = preset;
     const Profile profile = profile_of(preset);
-    if (preset.spines > 1) {
+    if (preset.spines > 1 && !has_one_skin(preset)) {
         tuft.spines = make_spines(preset, profile);
         tuft.beside = make_beside(preset, tuft.spines);
     } else {

@@ -73,8 +73,8 @@ UprightHair upright_hair_of(const Tuft& tuft, const ContactPlane& tip) {
     const Preset& p = tuft.preset;
     const double down = -glm::dot(tuft.pose.axis(), tip.normal);
     const double height = glm::dot(tuft.pose.position - tip.origin, tip.normal);
-    if (tuft.split || tuft.wide() || p.spine == SpineMethod::table || !(down > 0.1) || !(height > 0) ||
-        height >= down * p.length)
+    if (tuft.split || has_broad_side(p) || tuft.wide() || p.spine == SpineMethod::table || !(down > 0.1) ||
+        !(height > 0) || height >= down * p.length)
         return foot;
     foot.centre = tuft.pose.position + height / down * tuft.pose.axis();
     foot.radius = rest_radius(p, height / down / p.length);
