@@ -6,10 +6,10 @@
 /// Where ink lies on a model, for tests of placement.
 namespace tuft::stroke::test {
 
-/// Returns the centroid of the ink that an entry leaves on a model, metres.
-inline Vec3 ink_centre(const Model& model, const JournalEntry& entry) {
-    Document painting(model);
+/// Returns the centroid of the ink of an empty painting after an entry, metres.
+inline Vec3 ink_centre(Document& painting, const JournalEntry& entry) {
     painting.paint(entry);
+    const Model& model = painting.model();
     Vec3 sum(0);
     double all = 0;
     const ink::Canvas& canvas = painting.layers().canvas();
@@ -20,6 +20,12 @@ inline Vec3 ink_centre(const Model& model, const JournalEntry& entry) {
                 if (amount > 0) all += amount, sum += amount * Vec3(model.texels.position(slot, t));
             }
     return sum / all;
+}
+
+/// Returns the centroid of the ink that an entry leaves on a model, metres.
+inline Vec3 ink_centre(const Model& model, const JournalEntry& entry) {
+    Document painting(model);
+    return ink_centre(painting, entry);
 }
 
 }  // namespace tuft::stroke::test

@@ -218,7 +218,7 @@ TEST(TipLag, APetalOfAFlatNarrowsSteadily) {
         if (x > 8e-3) {
             EXPECT_LT(width, narrowest + 2.5 * kCell) << x << ": to a cell at each side";
         }
-        narrowest = std::min(narrowest, width);
+        if (x > 6e-3) narrowest = std::min(narrowest, width);  // pressed
         EXPECT_GT(width, x < 14e-3 ? flat.preset.width - 2 * kCell : 0) << x << ": in one piece, up to its tail";
     }
 }
@@ -303,10 +303,11 @@ TEST(TipLag, ADotOfAFanIsOnePieceWhereItIsSet) {
             sum += Vec2(x, y), ++cells;
             if (std::abs(y) < 2e-3) middle = {std::min(middle[0], x), std::max(middle[1], x)};
         }
-    // Hair that is pressed lies 1.3 mm short of where dragged hair lies. Upright the dot is a T, 10 mm long.
+    // Hair that is pressed lies 1.3 mm short of where dragged hair lies. Upright the dot is a T, 10 mm long. The hair
+    // leaps over 1 mm as it comes down.
     EXPECT_NEAR(sum.x / cells, 0, 1.5e-3);
     EXPECT_NEAR(sum.y / cells, 0, 1e-4);
-    EXPECT_LT(middle[1] - middle[0], 5e-3);
+    EXPECT_LT(middle[1] - middle[0], 6e-3);
 }
 
 TEST(TipLag, AMakeLeansAcrossItsBroadSideUnlessAPenTiltsIt) {
@@ -443,8 +444,7 @@ Model dome(double curvature, double slope) {
     return prepare_model(soup, options);
 }
 
-/// Mean place of the ink of a dot that is set at the origin, metres.
-Vec3 place_of_dot(const Model& model, const Vec3& normal, const std::string& brush, double pressure, bool pressed) {
+PaintStroke dot_at_origin(const Vec3& normal, const std::string& brush, double pressure, bool pressed) {
     PaintStroke s;
     s.brush = brush;
     s.ink = "carbon";
@@ -452,7 +452,12 @@ Vec3 place_of_dot(const Model& model, const Vec3& normal, const std::string& bru
     s.trace.placement.mapping = SurfaceMapping::drape;
     for (int i = 0; i <= 20; ++i)
         s.trace.samples.push_back({.time = 0.01 * i, .pressure = pressure * (pressed ? 1 : 1 - std::abs(0.1 * i - 1))});
-    return test::ink_centre(model, s);
+    return s;
+}
+
+/// Mean place of the ink of a dot that is set at the origin, metres.
+Vec3 place_of_dot(const Model& model, const Vec3& normal, const std::string& brush, double pressure, bool pressed) {
+    return test::ink_centre(model, dot_at_origin(normal, brush, pressure, pressed));
 }
 
 // Pressed down plumb the hair lay 1.5 mm to one side on a plane, and to any side where the surface bends.
@@ -467,6 +472,46 @@ TEST(TipLag, ADotLiesWhereItIsSetOnAnySlope) {
                     << curvature << ' ' << slope << ' ' << pressed;
             }
         }
+}
+
+// Where its hair leaps, more is inked than where single spines lie: a filbert's dot lay 1.5 mm off.
+TEST(TipLag, ADotOfAFilbertLiesWhereItIsSet) {
+    brush::Preset preset = brush::load_preset("filbert-12");
+    preset.name = "coarse";
+    preset.spines = 3;
+    preset.segments = 8;
+    const Model model = dome(1 / 0.075, 0);
+    for (const bool pressed : {false, true}) {
+        Document painting(model);
+        painting.use(preset);
+        const Vec3 off = test::ink_centre(painting, dot_at_origin({0, 0, 1}, preset.name, 0.3, pressed));
+        EXPECT_LT(glm::length(Vec2(off)), 0.3e-3) << pressed;
+    }
+}
+
+// Hand and brush in the mirror paint the mirror image. The holder leans ahead: hair set down plumb falls to its own y.
+TEST(TipLag, AFlatAndASwordPaintTheirMirrorImages) {
+    constexpr double kCell = 1e-4;
+    for (const std::string name : {"flat-12", "sword-8"}) {
+        brush::Preset preset = brush::load_preset(name);
+        preset.segments = 10;
+        const HolderOptions options = holder_options(preset);
+        const auto rolled = [&](double roll) {
+            StrokeSamples trace = rolled_line(12e-3, 0.4, roll);
+            for (StrokeSample& s : trace.samples) s.tilt = {0.3, 0};
+            return plane_ink(trace, preset, options, 4e-4, kCell);
+        };
+        const PlaneInk one = rolled(0.5), other = rolled(-0.5);
+        double differ = 0, all = 0;
+        for (double y = -0.02 + 0.5 * kCell; y < 0.02; y += kCell)
+            for (double x = -0.06 + 0.5 * kCell; x < 0.03; x += kCell) {
+                const double a = one.at({x, y});
+                all += a;
+                differ += std::abs(a - other.at({x, -y}));
+            }
+        ASSERT_GT(all, 1000) << name;
+        EXPECT_LT(differ, 1e-6 * all) << name;
+    }
 }
 
 }  // namespace

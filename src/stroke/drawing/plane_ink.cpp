@@ -15,6 +15,8 @@
 namespace tuft::stroke {
 namespace {
 
+constexpr int kMostMissed = 2;  // poses in the air after which what was before is forgotten, as of a stroke
+
 std::uint64_t key_of(std::int64_t i, std::int64_t j) {
     return (static_cast<std::uint64_t>(i) << 32) ^ (static_cast<std::uint64_t>(j) & 0xFFFFFFFFu);
 }
@@ -126,6 +128,7 @@ std::vector<brush::Pose> PlaneDrawing::poses_of(const StrokeSamples& trace) cons
 const PlaneInk& PlaneDrawing::draw(const StrokeSamples& trace) {
     ink_ = PlaneInk(ink_.cell());
     static_cast<brush::TuftBend&>(tuft_) = fresh_;
+    before_.clear();
     double before = 0;
     for (bool first = true; const brush::Pose& pose : poses_of(trace)) {
         add_stamp(pose, first ? 0 : pose.time - before);
@@ -139,7 +142,11 @@ void PlaneDrawing::add_stamp(const brush::Pose& pose, double dt) {
     const brush::ContactPlane plane;
     const double cell = ink_.cell();
     const brush::TuftState state = brush::step(tuft_, pose, {&plane, 1}, dt);
-    if (!state.touching) return;
+    if (!state.touching) {
+        if (++missed_ > kMostMissed) before_.clear();
+        return;
+    }
+    missed_ = 0;
     if (tuft_.carried) {
         ink_.add(
             footprint::rasterise_polygons(
@@ -149,11 +156,16 @@ void PlaneDrawing::add_stamp(const brush::Pose& pose, double dt) {
     }
     Recycled<footprint::Trail> trails = footprint::find_trails(state, plane_frame, {}, tuft_.preset.length, kSkinFilm);
     footprint::cover_upright_hair(trails, brush::upright_hair_of(tuft_, plane), plane_frame, kSkinFilm);
-    Recycled<footprint::Outline> outlines;
-    for (const footprint::Trail& trail : trails)
-        if (footprint::Outline o = footprint::outline_of(trail, footprint::OutlineOptions{}.points); o.left.size() >= 3)
-            outlines.push_back(std::move(o));
+    footprint::fill_rows(trails);
+    Recycled<footprint::Trail> leapt;
+    if (!before_.empty())
+        leapt = footprint::leapt_trails(trails, plane_frame, before_, plane_frame, Vec2(pose.position - root_));
+    const Recycled<footprint::Outline> outlines =
+        footprint::outlines_of(trails, footprint::OutlineOptions{}.points, leapt);
     ink_.add(footprint::rasterise(outlines, plane_frame, 0, cell), std::max(0.0, pose.time));
+    if (!tuft_.wide()) return;
+    before_ = std::move(trails);
+    root_ = pose.position;
 }
 
 PlaneInk plane_ink(const StrokeSamples& trace, const brush::Preset& preset, const HolderOptions& options, double step,

@@ -9,6 +9,7 @@
 
 #include "brush/preset/preset.h"
 #include "brush/tuft/tuft.h"
+#include "footprint/outline/cuts.h"
 #include "footprint/outline/footprint.h"
 #include "stroke/placement/placement.h"
 
@@ -64,6 +65,9 @@ class PlaneDrawing {
     brush::Tuft tuft_;
     brush::TuftBend fresh_;
     PlaneInk ink_;
+    Recycled<footprint::Trail> before_;  // of the pose before, of a tuft with several spines
+    Vec3 root_{0};                       // metres, there
+    int missed_ = 0;                     // poses since then
 };
 
 /// Returns the area that a full brush touches along a flat trace on a plane. Frame: metres, x to the right, y up (−y of
