@@ -385,5 +385,26 @@ TEST(WideTuft, AStepTakenAgainOnTiltedPlanesEndsWhereAFreshOneDoes) {
     }
 }
 
+// The form of its ferrule says nothing of a tuft with one spine.
+TEST(WideTuft, ASuperellipseOfOneSpineIsTheRoundTuftToTheBit) {
+    const Preset round = load_preset("wolf-small");
+    Preset other = round;
+    other.corner = 16;
+    other.hair_diameter *= 3;
+    other.hair_friction = 1;
+    other.surface_tension = 0.07;
+    const TuftState one = dragged(round, {}), two = dragged(other, {});
+    EXPECT_EQ(one.force, two.force);
+    ASSERT_EQ(two.branches.size(), one.branches.size());
+    for (std::size_t b = 0; b < one.branches.size(); ++b)
+        for (std::size_t k = 0; k < one.branches[b].sections.size(); ++k) {
+            const Section &s = one.branches[b].sections[k], &t = two.branches[b].sections[k];
+            ASSERT_EQ(s.centre, t.centre);
+            ASSERT_EQ(s.e, t.e);
+            ASSERT_EQ(s.a, t.a);
+            ASSERT_EQ(s.b, t.b);
+        }
+}
+
 }  // namespace
 }  // namespace tuft::brush
