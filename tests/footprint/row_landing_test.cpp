@@ -71,5 +71,23 @@ TEST(RowLanding, OfAnEvenRowIsAtOnce) {
     }
 }
 
+/// A row on its edge that is sheared lies more closely than it is wide: its second spine is 0.4 pitches up, and midway
+/// to it the hair is in the air by 0.2. Its own half width would reach the surface 2 mm ahead of the first one.
+TEST(RowLanding, OnItsEdgeTouchesWithItsLowestHairOnly) {
+    brush::TuftState tuft = lying_row(0, 0);
+    for (int k = 0; k < kSpines; ++k)
+        for (brush::Section& s : tuft.branches[static_cast<std::size_t>(k)].sections) {
+            s.centre = {s.centre.x + kPitch * k, 0, 0.4 * kPitch * k};
+            s.e = {0, 0, 1};
+            s.m = {0, 1, 0};
+        }
+    const Recycled<Trail> trails = find_trails(tuft, Frame{}, {}, 26e-3, 1e-4);
+    ASSERT_EQ(trails.size(), 1u);
+    EXPECT_EQ(trails[0].branch, 0);
+    // Its section keeps its area: what it gives up in width it has in thickness.
+    const Cut& cut = trails[0].cuts.back();
+    EXPECT_GT(glm::length(cut.thick()), 1.2 * kHalfThick);
+}
+
 }  // namespace
 }  // namespace tuft::footprint

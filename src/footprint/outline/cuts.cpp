@@ -7,6 +7,7 @@
 
 #include "atlas/texels/log_map.h"
 #include "core/ease.h"
+#include "footprint/outline/outline_parts.h"
 
 namespace tuft::footprint {
 namespace {
@@ -153,10 +154,12 @@ class BranchSurface {
         double z = 0, a = 0, b = 0;
     };
 
-    /// Closes a blunt tip by half an ellipsoid; the edge of a strip by half a cylinder, as wide as the strip.
+    /// Closes a blunt tip by half an ellipsoid; the edge of a strip by half a cylinder, as wide as the strip, which is
+    /// thinner than wide.
     void add_cap(const brush::Section& tip, bool strip, const Frame& frame, const brush::ContactPlane* plane,
                  double film) {
-        const double r = strip ? tip.b + film : std::sqrt((tip.a + film) * (tip.b + film));
+        const bool thin_along_e = strip && std::abs(tip.turn.y) > std::abs(tip.turn.x) && tip.a < tip.b;
+        const double r = strip ? (thin_along_e ? tip.a : tip.b) + film : std::sqrt((tip.a + film) * (tip.b + film));
         if (!(r > 1e-7)) return;
         static constexpr std::array<double, 5> kAhead{1, 0.98, 0.9, 0.7, 0.4};
         for (std::size_t k = 0; k < kAhead.size(); ++k) {
@@ -164,8 +167,8 @@ class BranchSurface {
             const double shrink = std::sqrt(1 - kAhead[k] * kAhead[k]);
             ring.centre += kAhead[k] * r * tip.tangent;
             nodes_.push_back(cut_of(ring, frame, plane, film));
-            if (!strip) nodes_.back().a *= shrink;
-            nodes_.back().b *= shrink;
+            if (!strip || thin_along_e) nodes_.back().a *= shrink;
+            if (!thin_along_e) nodes_.back().b *= shrink;
             steps_.push_back((kAhead[k] - (k + 1 < kAhead.size() ? kAhead[k + 1] : 0)) * r);
         }
     }
@@ -408,11 +411,14 @@ Recycled<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, st
     Recycled<BranchSurface> surfaces;
     const std::size_t count = tuft.branches.size();
     surfaces.reserve(count);
+    const bool row = tuft.strips && count > 1;
+    const Recycled<brush::Branch> bound = row ? bound_on_edge(tuft, frame, planes) : Recycled<brush::Branch>{};
+    const Recycled<brush::Branch>& branches = row ? bound : tuft.branches;
     for (std::size_t k = 0; k < count; ++k) {
-        const auto& sections = tuft.branches[k].sections;
+        const auto& sections = branches[k].sections;
         if (sections.size() < 2) continue;
         const BranchSurface& surface = surfaces.emplace_back(
-            tuft.branches[k], tuft.strips, frame, k < planes.size() ? &planes[k] : nullptr, std::max(film, 0.0));
+            branches[k], tuft.strips, frame, k < planes.size() ? &planes[k] : nullptr, std::max(film, 0.0));
         // The middle one of several branches goes on as the trunk.
         const bool carries = count > 1 && k == count / 2 && !tuft.wide;
         const double trunk = carries ? surface.at_section(tuft.branches[0].sections.size() - 1) : 1e9;

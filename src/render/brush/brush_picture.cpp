@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "brush/tuft/ferrule.h"
 #include "core/text/units.h"
 #include "render/brush/tuft_drawing.h"
 
@@ -35,7 +36,7 @@ enum class Side { broad, edge };
 /// `slant` about x leans it across.
 struct Hand {
     Posed now;
-    double lowest = 0;  ///< of the root, where the straight tip touches
+    double lowest = 0;  ///< of the root, where the lowest straight hair touches
 
     Hand(const Preset& p, double tilt, double slant, Side side) {
         now.tuft = make_tuft(p, 3);
@@ -43,6 +44,11 @@ struct Hand {
         if (has_broad_side(now.tuft.preset) && side == Side::broad)
             now.pose.rotation = now.pose.rotation * glm::angleAxis(0.5 * std::numbers::pi, Vec3{0, 0, 1});
         lowest = p.length * -now.pose.axis().z;
+        // A wide ferrule that leans along its broad side comes down on its corner.
+        for (const FerruleSpine& set : ferrule_spines(p)) {
+            const Vec3 hair = set.length * p.length * Vec3{std::sin(set.lean), 0, -std::cos(set.lean)};
+            lowest = std::max(lowest, -(now.pose.rotation * (Vec3{set.x, set.y, 0} + hair)).z);
+        }
         now.pose.position = {0, 0, lowest};
     }
 

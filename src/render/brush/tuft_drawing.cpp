@@ -92,12 +92,32 @@ Vec3 point_of(const Section& s, const Vec2& place) {
     return s.centre + 0.97 * (s.a * place.x * s.e + s.b * place.y * s.m);
 }
 
-void fill_silhouette(BrushCanvas& canvas, const Strand& strand, const BrushView& view, const Vec3& colour) {
+/// Hair of a row at a place of section i of strand k: between two spines it is the mean of where both have it, so that
+/// a row that is sheared ends in one slanted edge.
+Vec3 point_in_row(const std::vector<Strand>& strands, std::size_t k, std::size_t i, const Vec2& place) {
+    constexpr double kChord = 0.8862269254527580;  // half the width of a strip, see brush::in_branch
+    const auto at = [&](std::size_t strand, double x) {
+        const Section& s = strands[strand].sections[i];
+        const Vec3 broad = s.turn.x * s.a * s.e + s.turn.y * s.b * s.m,
+                   thick = s.turn.x * s.b * s.m - s.turn.y * s.a * s.e;
+        return s.centre + 0.97 * (x * broad + place.y * thick);
+    };
+    const Vec3 own = at(k, place.x);
+    const bool next = place.x > 0;
+    if (next ? k + 1 == strands.size() : k == 0) return own;
+    const std::size_t beside = next ? k + 1 : k - 1;
+    if (strands[beside].sections.size() != strands[k].sections.size()) return own;
+    return glm::mix(own, at(beside, place.x + (next ? -2 : 2) * kChord), 0.5 * std::abs(place.x) / kChord);
+}
+
+/// `from`: the first section that is filled.
+void fill_silhouette(BrushCanvas& canvas, const Strand& strand, const BrushView& view, const Vec3& colour,
+                     std::size_t from) {
     constexpr int kRound = 16;
     constexpr double kUnder = 0.88;  // of the section: no rim where the outermost hair happens to lie further in
     constexpr double kRoot = 0.5;
     std::vector<Vec2> before, now;
-    for (std::size_t i = 0; i < strand.sections.size(); ++i) {
+    for (std::size_t i = from; i < strand.sections.size(); ++i) {
         // Like its hair a branch goes straight from its last section to the trunk's first.
         if (strand.trunk < strand.sections.size() && i < strand.trunk && i + kBetween + 1 > strand.trunk) continue;
         const Section& s = strand.sections[i];
@@ -118,7 +138,7 @@ void fill_silhouette(BrushCanvas& canvas, const Strand& strand, const BrushView&
         const Vec2 across = size > 1e-6 ? Vec2{-t.y, t.x} / size : Vec2{1, 0};
         const Vec2 half = std::hypot(glm::dot(e, across), glm::dot(m, across)) * across;
         now = {centre + half, centre - half};
-        if (i > 0) {
+        if (i > from) {
             const Vec2 quad[] = {before[0], now[0], now[1], before[1]};
             fill_polygon(canvas, quad, colour);
         }
@@ -131,8 +151,10 @@ void draw_tuft_hair(BrushCanvas& canvas, const Tuft& tuft, const TuftState& stat
     if (tuft.carried) return draw_shape(canvas, state.shape, view);
     const std::vector<Strand> strands = strands_of(state, appearance);
     const int count = static_cast<int>(strands.size());
+    // A row ends in the ends of its hair, not in those of its spines.
+    const std::size_t from = state.strips && count > 1 ? kBetween + 1 : 0;
     if (!appearance.dry)
-        for (const Strand& strand : strands) fill_silhouette(canvas, strand, view, linear_colour(78, 55, 40));
+        for (const Strand& strand : strands) fill_silhouette(canvas, strand, view, linear_colour(78, 55, 40), from);
     const std::vector<Bristle>& bristles = tuft.bundles.bristles;
     std::vector<Placed> placed;
     std::vector<double> near;
@@ -168,7 +190,7 @@ void draw_tuft_hair(BrushCanvas& canvas, const Tuft& tuft, const TuftState& stat
         for (std::size_t i = stop; i < fine.size(); ++i) {
             const std::optional<Vec2> at = p.at(strands[k], k, i);
             if (!at) continue;
-            line.push_back(view(point_of(fine[i], *at)));
+            line.push_back(view(state.strips ? point_in_row(strands, k, i, *at) : point_of(fine[i], *at)));
             width.push_back(0.5 + (appearance.dry ? 0.7 : 1.1) * std::min(1.0, 4 * static_cast<double>(i - stop) / n));
             lit += glm::dot(at->x * fine[i].e + at->y * fine[i].m, light);
         }
