@@ -4,9 +4,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <numeric>
 
 namespace tuft {
@@ -103,6 +105,46 @@ TEST_F(DiskCacheTest, AnEntryWithAnyByteChangedIsDeletedAndNotReturned) {
     }
     std::ofstream(file, std::ios::binary | std::ios::trunc) << good;
     EXPECT_TRUE(load(cache, 7));
+}
+
+TEST_F(DiskCacheTest, AMappedArrayOutlivesItsEntryAndIsCheckedWhole) {
+    const DiskCache cache(folder_);
+    const auto all = std::make_shared<std::vector<int>>(300'000);  // two pieces, each with a hash
+    std::iota(all->begin(), all->end(), 5);
+    const auto put = [&] {
+        return cache.write(key(1), [&](CacheWriter& entry) {
+            entry.put_text("before");
+            entry.put_to_map(SharedArray<int>(all, std::span<const int>(*all)));
+            entry.put_to_map(SharedArray<int>());
+            entry.put_text("after");
+        });
+    };
+    const auto get = [&](SharedArray<int>& mapped) {
+        return cache.read(key(1), [&](CacheReader& entry) {
+            EXPECT_EQ(entry.get_text(), "before");
+            mapped = entry.map<int>();
+            EXPECT_TRUE(entry.map<int>().empty());
+            EXPECT_EQ(entry.get_text(), "after");
+        });
+    };
+    SharedArray<int> mapped;
+    ASSERT_TRUE(put());
+    ASSERT_TRUE(get(mapped));
+    const fs::path file = files().at(0);
+    const std::uintmax_t size = fs::file_size(file);
+    fs::remove(file);
+    EXPECT_TRUE(std::ranges::equal(mapped, *all));
+    for (const std::uintmax_t at : {size / 3, size - 100'000}) {
+        ASSERT_TRUE(put());
+        std::fstream(file, std::ios::binary | std::ios::in | std::ios::out)
+            .seekp(static_cast<std::streamoff>(at))
+            .put(1);
+        EXPECT_FALSE(get(mapped)) << at;
+        EXPECT_FALSE(fs::exists(file)) << at;
+    }
+    ASSERT_TRUE(put());
+    fs::resize_file(file, size / 2);
+    EXPECT_FALSE(get(mapped));
 }
 
 TEST_F(DiskCacheTest, TheEntriesUsedLongestAgoAreDeletedFirst) {

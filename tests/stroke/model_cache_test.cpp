@@ -109,6 +109,68 @@ TEST_F(ModelCache, AStoredModelHasTheSameBitsAndIsNotUnwrappedAgain) {
     expect_same_bits(made, read);
 }
 
+TEST_F(ModelCache, APackedTexelMapIsStoredAndIsTheSameToTheBit) {
+    const auto same = [](const auto& x, const auto& y) {
+        return x.size() == y.size() && !x.empty() && std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
+    };
+    mesh::TriangleMesh mesh;
+    atlas::Atlas atlas;
+    {
+        const Model model = prepare();
+        mesh = *model.mesh, atlas = model.atlas;
+    }
+    fs::remove_all(folder_);
+    const auto texels = [&](std::set<std::string>& phases) {
+        ModelOptions options{.texels = atlas::TexelStore::packed, .cache = DiskCache(folder_)};
+        options.progress = [&](std::string_view phase, double) { return phases.emplace(phase), true; };
+        return prepare_model(mesh, atlas, options);
+    };
+    std::set<std::string> first, second, third;
+    const Model made = texels(first), read = texels(second);
+    EXPECT_TRUE(first.contains("cluster graph"));
+    EXPECT_FALSE(second.contains("cluster graph"));
+    for (const auto& [a, b] : {std::pair(&made.texels, &read.texels)}) {
+        EXPECT_TRUE(same(a->tiles, b->tiles));
+        EXPECT_TRUE(same(a->packed, b->packed));
+        EXPECT_TRUE(same(a->boxes, b->boxes));
+        EXPECT_TRUE(same(a->slot_of_tile, b->slot_of_tile));
+        EXPECT_TRUE(same(a->tile_of_slot, b->tile_of_slot));
+        EXPECT_TRUE(same(a->reach, b->reach));
+        EXPECT_TRUE(same(a->cluster_start, b->cluster_start));
+        EXPECT_TRUE(same(a->cluster_chart, b->cluster_chart));
+        EXPECT_EQ(a->texel_size, b->texel_size);
+        EXPECT_EQ(a->size, b->size);
+        EXPECT_EQ(a->tiles_per_side, b->tiles_per_side);
+    }
+    EXPECT_TRUE(same(made.clusters.clusters, read.clusters.clusters));
+    EXPECT_TRUE(same(made.clusters.cluster_start, read.clusters.cluster_start));
+    EXPECT_TRUE(same(made.clusters.edge_start, read.clusters.edge_start));
+    EXPECT_TRUE(same(made.clusters.edges, read.clusters.edges));
+    mesh.corner_normals[7].x += 1e-3f;
+    texels(third);
+    EXPECT_TRUE(third.contains("cluster graph"));
+}
+
+TEST_F(ModelCache, ATexelMapThatPointsOutsideItsArraysIsMadeAgain) {
+    const Model made = prepare();
+    const ModelOptions options{.texels = atlas::TexelStore::packed, .cache = DiskCache(folder_)};
+    const auto with = [&](const auto& change) {
+        Model bad = prepare_model(*made.mesh, made.atlas, ModelOptions{.texels = atlas::TexelStore::packed});
+        change(bad);
+        const CacheKey key = texels_key(*made.mesh, made.atlas);
+        ASSERT_TRUE(options.cache.write(key, [&](CacheWriter& entry) { put_texels(entry, bad); }));
+        EXPECT_FALSE(options.cache.read(key, [](CacheReader& entry) { get_texels(entry); }));
+    };
+    with([](Model& m) { m.texels.slot_of_tile[0] = 1'000'000; });
+    with([](Model& m) { m.texels.tile_of_slot[0] = 1'000'000; });
+    with([](Model& m) { m.texels.boxes.pop_back(); });
+    with([](Model& m) { m.texels.packed = {}; });
+    with([](Model& m) { m.texels.cluster_start[1] = 1'000'000; });
+    with([](Model& m) { m.clusters.edge_start.back() += 1; });
+    with([](Model& m) { m.clusters.edges[3].to = 1'000'000; });
+    with([](Model& m) { m.clusters.clusters[3].slot = 1'000'000; });
+}
+
 TEST_F(ModelCache, EveryOptionAndEveryPointChangesTheKey) {
     std::set<std::pair<std::uint64_t, std::uint64_t>> keys;
     std::size_t n = 0;

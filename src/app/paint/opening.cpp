@@ -179,7 +179,8 @@ PaintWork load_project(const fs::path& path, const fs::path& session, OpenAs as,
     work.frame = stored.frame;
     const ink::Substrate substrate = ink::parse_substrate(stored.substrate, path.string());
     work.model = std::make_unique<stroke::Model>(
-        stroke::prepare_model(std::move(stored.mesh), std::move(stored.atlas), progress));
+        stroke::prepare_model(std::move(stored.mesh), std::move(stored.atlas),
+                              stroke::ModelOptions{.cache = stroke::shared_model_cache(), .progress = progress}));
     work.document = std::make_unique<stroke::Document>(*work.model);
     work.document->use(substrate);
     io::use_presets(project, *work.document);

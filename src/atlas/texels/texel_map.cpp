@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <span>
 
 #include "atlas/texels/border_cells.h"
 #include "core/error.h"
@@ -382,12 +384,19 @@ struct FilledTiles {
     std::vector<std::vector<PackedBox>> boxes;       // of each cluster of a packed tile
 };
 
-FilledTiles fill_tiles(const mesh::TriangleMesh& mesh, const Atlas& atlas, const Bands& bands, TexelMap& map) {
+/// Arrays of a map while they are filled.
+struct Tiles {
+    std::vector<TexelTile> tiles;
+    std::vector<PackedShape> packed;
+};
+
+FilledTiles fill_tiles(const mesh::TriangleMesh& mesh, const Atlas& atlas, const Bands& bands, TexelMap& map,
+                       Tiles& to) {
     const std::uint32_t side = map.tiles_per_side;
-    const bool packed = !map.packed.empty();
+    const bool packed = !to.packed.empty();
     FilledTiles filled;
-    filled.charts.resize(map.tiles.size());
-    filled.boxes.resize(map.packed.size());
+    filled.charts.resize(to.tiles.size());
+    filled.boxes.resize(to.packed.size());
     parallel_for(side, 1, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint32_t> ids;
         TexelShape buffer{};
@@ -398,12 +407,12 @@ FilledTiles fill_tiles(const mesh::TriangleMesh& mesh, const Atlas& atlas, const
                 const std::uint32_t slot = map.slot_of_tile[band * side + tx];
                 if (slot == kNone) continue;
                 TexelShape& shape = packed ? buffer : map.shapes[slot];
-                TileClusters clusters = fill_tile(triangles, atlas, {tx, band, ids.data()}, shape, map.tiles[slot]);
+                TileClusters clusters = fill_tile(triangles, atlas, {tx, band, ids.data()}, shape, to.tiles[slot]);
                 filled.charts[slot] = std::move(clusters.chart);
                 map.reach[slot] = clusters.reach;
                 if (!packed) continue;
                 filled.boxes[slot].resize(filled.charts[slot].size());
-                map.packed[slot] = pack_shape(shape, map.tiles[slot], filled.boxes[slot]);
+                to.packed[slot] = pack_shape(shape, to.tiles[slot], filled.boxes[slot]);
             }
         }
     });
@@ -428,11 +437,14 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas, con
 
     const std::size_t n_slots = map.tile_of_slot.size();
     const bool packed = is_packed(store, atlas.size);
-    resize_in_large_pages(map.tiles, n_slots);
+    const auto arrays = std::make_shared<Tiles>();
+    resize_in_large_pages(arrays->tiles, n_slots);
     resize_in_large_pages(map.shapes, packed ? 0 : n_slots);
-    resize_in_large_pages(map.packed, packed ? n_slots : 0);
+    resize_in_large_pages(arrays->packed, packed ? n_slots : 0);
     map.reach.assign(n_slots, 0);
-    FilledTiles filled = fill_tiles(mesh, atlas, bands, map);
+    FilledTiles filled = fill_tiles(mesh, atlas, bands, map, *arrays);
+    map.tiles = {arrays, std::span<const TexelTile>(arrays->tiles)};
+    map.packed = {arrays, std::span<const PackedShape>(arrays->packed)};
     if (!(map.texel_size > 0)) map.texel_size = mean_texel_size(map);
     map.cluster_start.assign(1, 0);
     for (const auto& c : filled.charts) {
@@ -444,7 +456,7 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas, con
     filled = {};
     release_free_memory();
     for (const BorderCell& c : build_border_cells(mesh, atlas, map, true).cells)
-        map.tiles[c.texel.slot].area[c.texel.texel] = static_cast<float>(c.area);
+        arrays->tiles[c.texel.slot].area[c.texel.texel] = static_cast<float>(c.area);
     report(progress, "texel map", 1);
     return map;
 }

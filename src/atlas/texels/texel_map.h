@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "atlas/atlas.h"
+#include "core/files/shared_array.h"
 
 /// \file
 /// Map from texels to surface points: for each 16 × 16 tile of the atlas that a chart touches, position and normal
@@ -64,9 +65,9 @@ struct TexelMap {
     double texel_size = 0;                    ///< metres, mean
     std::vector<std::uint32_t> slot_of_tile;  ///< [tiles_per_side²] slot or kNone
     std::vector<std::uint32_t> tile_of_slot;  ///< [n_slots] tile index = ty * tiles_per_side + tx
-    std::vector<TexelTile> tiles;             ///< [n_slots]
+    SharedArray<TexelTile> tiles;             ///< [n_slots]
     std::vector<TexelShape> shapes;           ///< [n_slots], or empty when packed
-    std::vector<PackedShape> packed;          ///< [n_slots], or empty
+    SharedArray<PackedShape> packed;          ///< [n_slots], or empty
     std::vector<PackedBox> boxes;             ///< [n_clusters] when packed
     /// [n_slots] metres: neighbouring texels further apart than this are not connected on the surface.
     std::vector<float> reach;

@@ -331,8 +331,9 @@ int paint(const Paint& a, const StrokeSource& source) {
     const bool in_place =
         goes_on && (a.output.project.empty() || std::filesystem::equivalent(a.output.project, a.model, no_matter));
     const auto reserved = in_place ? std::nullopt : reserve(a.output.project, console);
-    const auto before =
-        goes_on ? open_project(a.model, in_place ? io::Access::write : io::Access::read, console) : nullptr;
+    const auto before = goes_on ? open_project(a.model, in_place ? io::Access::write : io::Access::read, console,
+                                               a.surface.no_cache ? DiskCache() : stroke::shared_model_cache())
+                                : nullptr;
     std::vector<stroke::JournalEntry> strokes = source.load(console);
     Surface surface = a.surface;
     if (const double texel = a.drawing.auto_texel ? texel_for_detail(strokes, a) : 0; texel > 0)

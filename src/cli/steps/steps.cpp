@@ -386,14 +386,16 @@ std::optional<io::ProjectLock> reserve(const fs::path& path, Console& console) {
     return io::ProjectLock(path, options.patience, options.progress);
 }
 
-std::unique_ptr<OpenProject> open_project(const fs::path& path, io::Access access, Console& console) {
+std::unique_ptr<OpenProject> open_project(const fs::path& path, io::Access access, Console& console,
+                                          const DiskCache& cache) {
     auto opened =
         std::make_unique<OpenProject>(OpenProject{.file = io::Project::open(path, open_options(access, console))});
     io::ProjectModel stored = opened->file.model();
     opened->source = stored.source;
     opened->frame = stored.frame;
     opened->substrate = ink::parse_substrate(stored.substrate, path.string());
-    opened->model = stroke::prepare_model(std::move(stored.mesh), std::move(stored.atlas), console.progress());
+    opened->model = stroke::prepare_model(std::move(stored.mesh), std::move(stored.atlas),
+                                          stroke::ModelOptions{.cache = cache, .progress = console.progress()});
     return opened;
 }
 

@@ -121,7 +121,8 @@ std::optional<io::ProjectLock> reserve(const std::filesystem::path& path, Consol
 /// Returns the model that the strokes of a project are painted on again: the stored one, with a new atlas if asked for,
 /// or a revised file. The stored one is moved out of `project`.
 stroke::Model replay_model(const Replay& arguments, OpenProject& project, Console& console);
-std::unique_ptr<OpenProject> open_project(const std::filesystem::path& path, io::Access access, Console& console);
+std::unique_ptr<OpenProject> open_project(const std::filesystem::path& path, io::Access access, Console& console,
+                                          const DiskCache& cache = stroke::shared_model_cache());
 /// Shows the painting by the project's recolouring, then by the command line's. Notes pigments that other inks share.
 void apply_recolouring(const io::Project& project, stroke::Document& painting, const Recolouring& recolouring,
                        Console& console);

@@ -1,11 +1,17 @@
 #include "core/files/disk_cache.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
+#include <fstream>
 #include <tuple>
 #include <utility>
 
@@ -21,6 +27,13 @@ constexpr const char* kExtension = ".entry";
 // What a killed process left unfinished is deleted after a day: until then another may still be writing it.
 constexpr auto kUnfinishedFor = std::chrono::hours(24);
 
+// What is mapped is hashed in pieces of so many bytes, each hash the seed of the next.
+constexpr std::size_t kPiece = std::size_t{1} << 20;
+
+std::uint64_t before_mapped(std::uint64_t at) {
+    return (CacheWriter::kMapped - at % CacheWriter::kMapped) % CacheWriter::kMapped;
+}
+
 std::array<std::uint64_t, 3> head_of(const CacheKey& key) {
     return {kMagic, key.low(), key.high()};
 }
@@ -33,10 +46,58 @@ fs::path cache_folder(const std::string& name) {
     return {};
 }
 
+void CacheWriter::write(const void* data, std::size_t size) {
+    if (size > 0) out_.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
+    at_ += size;
+}
+
 void CacheWriter::put_bytes(const void* data, std::size_t size) {
     const std::array<std::uint64_t, 2> head{size, hash_bytes(data, size)};
-    out_.write(reinterpret_cast<const char*>(head.data()), sizeof(head));
-    if (size > 0) out_.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
+    write(head.data(), sizeof(head));
+    write(data, size);
+}
+
+void CacheWriter::put_large(const void* data, std::size_t size) {
+    const auto* const bytes = static_cast<const char*>(data);
+    std::uint64_t hash = 0;
+    for (std::size_t i = 0; i < size; i += kPiece) hash = hash_bytes(bytes + i, std::min(kPiece, size - i), hash);
+    const std::array<std::uint64_t, 2> head{size, hash};
+    write(head.data(), sizeof(head));
+    const std::vector<char> padding(before_mapped(at_));
+    write(padding.data(), padding.size());
+    write(data, size);
+}
+
+OpenFile::OpenFile(const fs::path& path) : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+    struct stat facts {};
+    if (descriptor_ < 0) return;
+    if (::fstat(descriptor_, &facts) == 0 && S_ISREG(facts.st_mode)) {
+        size_ = static_cast<std::uint64_t>(facts.st_size);
+        return;
+    }
+    ::close(descriptor_);
+    descriptor_ = -1;
+}
+
+OpenFile::~OpenFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+bool OpenFile::read(std::uint64_t at, void* out, std::uint64_t size) const {
+    auto* bytes = static_cast<char*>(out);
+    while (size > 0) {
+        const ssize_t n = ::pread(descriptor_, bytes, size, static_cast<off_t>(at));
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return false;
+        bytes += n, at += static_cast<std::uint64_t>(n), size -= static_cast<std::uint64_t>(n);
+    }
+    return true;
+}
+
+std::shared_ptr<const void> OpenFile::map(std::uint64_t at, std::uint64_t size) const {
+    void* const bytes = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor_, static_cast<off_t>(at));
+    if (bytes == MAP_FAILED) return nullptr;
+    return {bytes, [size](const void* p) { ::munmap(const_cast<void*>(p), size); }};
 }
 
 void CacheReader::fail() {
@@ -45,17 +106,35 @@ void CacheReader::fail() {
 
 std::uint64_t CacheReader::next_size() {
     std::array<std::uint64_t, 2> head{};
-    if (left_ < sizeof(head) || !file_.read(reinterpret_cast<char*>(head.data()), sizeof(head))) fail();
-    left_ -= sizeof(head);
-    if (head[0] > left_) fail();
+    if (at_ > file_.size() || file_.size() - at_ < sizeof(head) || !file_.read(at_, head.data(), sizeof(head))) fail();
+    at_ += sizeof(head);
+    if (head[0] > file_.size() - at_) fail();
     hash_ = head[1];
     return head[0];
 }
 
 void CacheReader::get_bytes(void* out, std::uint64_t size) {
-    if (size > 0 && !file_.read(static_cast<char*>(out), static_cast<std::streamsize>(size))) fail();
-    left_ -= size;
+    if (!file_.read(at_, out, size)) fail();
+    at_ += size;
     if (hash_bytes(out, size) != hash_) fail();
+}
+
+std::shared_ptr<const void> CacheReader::map_bytes(std::uint64_t& size) {
+    size = next_size();
+    at_ += before_mapped(at_);
+    if (at_ > file_.size() || size > file_.size() - at_) fail();
+    std::vector<char> piece(std::min<std::uint64_t>(kPiece, size));
+    std::uint64_t hash = 0;
+    for (std::uint64_t i = 0; i < size; i += kPiece) {
+        const std::uint64_t n = std::min<std::uint64_t>(kPiece, size - i);
+        if (!file_.read(at_ + i, piece.data(), n)) fail();
+        hash = hash_bytes(piece.data(), n, hash);
+    }
+    if (hash != hash_) fail();
+    std::shared_ptr<const void> bytes;
+    if (size > 0 && !(bytes = file_.map(at_, size))) fail();
+    at_ += size;
+    return bytes;
 }
 
 std::string CacheReader::get_text() {
@@ -71,16 +150,13 @@ bool DiskCache::read(const CacheKey& key, const std::function<void(CacheReader&)
     if (folder_.empty()) return false;
     const fs::path path = path_of(key);
     std::error_code ec;
-    if (!fs::is_regular_file(path, ec)) return false;
-    const std::uintmax_t size = fs::file_size(path, ec);
-    std::ifstream file(path, std::ios::binary);
-    if (ec || !file) return false;
+    const OpenFile file(path);
+    if (!file) return false;
     try {
         std::array<std::uint64_t, 3> head{};
-        if (size < sizeof(head) || !file.read(reinterpret_cast<char*>(head.data()), sizeof(head)) ||
-            head != head_of(key))
+        if (file.size() < sizeof(head) || !file.read(0, head.data(), sizeof(head)) || head != head_of(key))
             CacheReader::fail();
-        CacheReader reader(std::move(file), size - sizeof(head));
+        CacheReader reader(file, sizeof(head));
         take(reader);
     } catch (const Error&) {
         fs::remove(path, ec);
@@ -98,7 +174,7 @@ bool DiskCache::write(const CacheKey& key, const std::function<void(CacheWriter&
             std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
             const std::array<std::uint64_t, 3> head = head_of(key);
             file.write(reinterpret_cast<const char*>(head.data()), sizeof(head));
-            CacheWriter writer(file);
+            CacheWriter writer(file, sizeof(head));
             put(writer);
             file.close();
             if (!file) throw Error(temporary.string(), "could not be written to its end (disk full?)");

@@ -2,9 +2,9 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <functional>
-#include <optional>
+#include <memory>
+#include <ostream>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/files/shared_array.h"
 #include "core/hash.h"
 
 /// \file
@@ -58,7 +59,8 @@ class CacheKey {
 /// Writes the arrays of one entry, each with its size and its hash.
 class CacheWriter {
   public:
-    explicit CacheWriter(std::ostream& out) : out_(out) {}
+    /// `at`: bytes of the file before what is written.
+    CacheWriter(std::ostream& out, std::uint64_t at) : out_(out), at_(at) {}
 
     template <class T>
     void put(std::span<const T> values) {
@@ -70,11 +72,45 @@ class CacheWriter {
         put(std::span<const T>(values));
     }
     void put_text(std::string_view text) { put(std::span<const char>(text)); }
+    /// Stores a large array so that `CacheReader::map` can read it.
+    template <class T>
+    void put_to_map(const SharedArray<T>& values) {
+        static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kMapped);
+        put_large(values.data(), values.size() * sizeof(T));
+    }
+
+    static constexpr std::uint64_t kMapped = 65536;  ///< alignment in the file: every system's pages divide it
 
   private:
     void put_bytes(const void* data, std::size_t size);
+    void put_large(const void* data, std::size_t size);
+    void write(const void* data, std::size_t size);
 
     std::ostream& out_;
+    std::uint64_t at_ = 0;  ///< bytes
+};
+
+/// A file open for reading; closed with the object.
+class OpenFile {
+  public:
+    OpenFile() = default;
+    /// Opens a regular file; nothing when it cannot.
+    explicit OpenFile(const std::filesystem::path& path);
+    OpenFile(const OpenFile&) = delete;
+    OpenFile& operator=(const OpenFile&) = delete;
+    ~OpenFile();
+
+    explicit operator bool() const { return descriptor_ >= 0; }
+    std::uint64_t size() const { return size_; }
+    /// Returns false unless all bytes were read.
+    bool read(std::uint64_t at, void* out, std::uint64_t size) const;
+    /// Maps a part that begins at a multiple of `CacheWriter::kMapped` and is not empty; null when it cannot. The
+    /// mapping outlives the object, and the file's name.
+    std::shared_ptr<const void> map(std::uint64_t at, std::uint64_t size) const;
+
+  private:
+    int descriptor_ = -1;
+    std::uint64_t size_ = 0;
 };
 
 /// Reads the arrays of one entry in the order in which they were written. Every function throws `Error` for an array
@@ -82,7 +118,8 @@ class CacheWriter {
 /// left in the file before memory is allocated.
 class CacheReader {
   public:
-    CacheReader(std::ifstream file, std::uintmax_t bytes) : file_(std::move(file)), left_(bytes) {}
+    /// Reads from byte `at` of the file on, which outlives the reader.
+    CacheReader(const OpenFile& file, std::uint64_t at) : file_(file), at_(at) {}
 
     template <class T>
     std::vector<T> get() {
@@ -102,6 +139,17 @@ class CacheReader {
     }
     /// Returns the next text.
     std::string get_text();
+    /// Returns an array that `put_to_map` stored. Its bytes are read once for their hash, through a small buffer; the
+    /// elements stay in the file.
+    template <class T>
+    SharedArray<T> map() {
+        static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= CacheWriter::kMapped);
+        std::uint64_t size = 0;
+        std::shared_ptr<const void> bytes = map_bytes(size);
+        if (size % sizeof(T) != 0) fail();
+        const std::span<const T> elements(static_cast<const T*>(bytes.get()), size / sizeof(T));
+        return {std::move(bytes), elements};
+    }
 
     /// Throws the `Error` for an entry that is not what it should be.
     [[noreturn]] static void fail();
@@ -109,9 +157,10 @@ class CacheReader {
   private:
     std::uint64_t next_size();
     void get_bytes(void* out, std::uint64_t size);
+    std::shared_ptr<const void> map_bytes(std::uint64_t& size);
 
-    std::ifstream file_;
-    std::uintmax_t left_;  ///< bytes
+    const OpenFile& file_;
+    std::uint64_t at_ = 0;  ///< bytes
     std::uint64_t hash_ = 0;
 };
 
@@ -129,6 +178,7 @@ class DiskCache {
         : folder_(std::move(folder)), limit_(limit) {}
 
     const std::filesystem::path& folder() const { return folder_; }
+    std::uintmax_t limit() const { return limit_; }
 
     /// Calls `take` with the entry of the key. Returns false when there is no entry or when `take` throws `Error`; a
     /// damaged entry is deleted. `take` must not change anything outside before it has read all it needs.

@@ -214,7 +214,7 @@ void Document::paint_step(BatchStroke& stroke, std::size_t step, const ProgressF
 }
 
 void Document::paint_batch(std::vector<BatchStroke>& batch, const ProgressFn& progress) {
-    if (!scratch_.tile_reach) scratch_.tile_reach = std::make_unique<TileReach>(model_.texels);
+    if (!scratch_.tile_reach) scratch_.tile_reach = std::make_unique<TileReach>(model_.texels, model_.clusters);
     std::atomic<std::size_t> first_fault{batch.size()};
     const auto guarded = [&](std::size_t i, const auto& work) {
         if (batch[i].hidden() || i >= first_fault) return;

@@ -1,43 +1,12 @@
 #include "stroke/document/tile_reach.h"
 
 #include <algorithm>
-#include <array>
-#include <numbers>
 #include <optional>
 
 #include "core/system/parallel.h"
 
 namespace tuft::stroke {
 namespace {
-
-// A tile at the border of a chart may hold texels of others, far away on the surface: one ball for each cluster, round
-// every third texel of every third row, and as far beyond as two texels are apart.
-void add_balls(const atlas::TexelMap& map, std::uint32_t slot, std::span<Ball> balls) {
-    constexpr int kEach = 3;
-    const double beyond = 2 * std::numbers::sqrt2 * static_cast<double>(map.reach[slot]);
-    atlas::TexelShape buffer;
-    const atlas::TexelShape& shape = atlas::shape_of(map, slot, buffer);
-    const auto& cluster = map.tiles[slot].cluster;
-    std::array<Ball, atlas::kTileTexels> sampled;  // radius: number of texels sampled
-    for (Ball& ball : std::span(sampled).first(balls.size())) ball = {Vec3{0}, 0};
-    const auto each_sample = [&](const auto& visit) {
-        for (int row = 0; row < atlas::kTile; row += kEach)
-            for (int column = 0; column < atlas::kTile; column += kEach) {
-                const auto t = static_cast<std::size_t>(row * atlas::kTile + column);
-                if (cluster[t] != atlas::kNoCluster) visit(cluster[t], Vec3(shape.px[t], shape.py[t], shape.pz[t]));
-            }
-    };
-    each_sample([&](std::uint8_t c, const Vec3& p) { sampled[c].centre += p, sampled[c].radius += 1; });
-    for (std::size_t c = 0; c < balls.size(); ++c)
-        if (sampled[c].radius > 0) balls[c] = {sampled[c].centre / sampled[c].radius, beyond};
-    each_sample([&](std::uint8_t c, const Vec3& p) {
-        balls[c].radius = std::max(balls[c].radius, glm::distance(balls[c].centre, p) + beyond);
-    });
-    // A cluster between the samples.
-    for (std::size_t t = 0; t < atlas::kTileTexels; ++t)
-        if (const std::uint8_t c = cluster[t]; c != atlas::kNoCluster && balls[c].radius < 0)
-            balls[c] = {Vec3(shape.px[t], shape.py[t], shape.pz[t]), 2 * beyond};
-}
 
 Ball ball_around(std::span<const Ball> balls) {
     Vec3 sum{0};
@@ -102,14 +71,15 @@ std::vector<ReachedPlace> reached_places(const mesh::SurfaceQuery& query, std::s
     return places;
 }
 
-TileReach::TileReach(const atlas::TexelMap& map)
-    : first_(map.cluster_start), clusters_(map.cluster_start.back()), groups_((map.n_slots() + kGroup - 1) / kGroup) {
-    parallel_for(groups_.size(), 4, [&](std::size_t begin, std::size_t end) {
+TileReach::TileReach(const atlas::TexelMap& map, const atlas::ClusterGraph& graph)
+    : first_(map.cluster_start), clusters_(graph.n_clusters()), groups_((map.n_slots() + kGroup - 1) / kGroup) {
+    parallel_for(groups_.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t g = begin; g < end; ++g) {
             const std::size_t first = g * kGroup, last = std::min(first + kGroup, map.n_slots());
-            for (std::size_t slot = first; slot < last; ++slot)
-                if (first_[slot] < first_[slot + 1])
-                    add_balls(map, static_cast<std::uint32_t>(slot), balls_of(slot, slot + 1));
+            for (std::size_t i = first_[first]; i < first_[last]; ++i) {
+                const atlas::TexelCluster& c = graph.clusters[i];
+                clusters_[i] = {Vec3(c.centre), static_cast<double>(c.radius) + static_cast<double>(map.reach[c.slot])};
+            }
             groups_[g] = ball_around(balls_of(first, last));
         }
     });

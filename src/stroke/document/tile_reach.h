@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "atlas/texels/texel_map.h"
+#include "atlas/texels/cluster_graph.h"
 #include "brush/preset/preset.h"
 #include "brush/state/tuft_state.h"
 #include "mesh/query/surface_query.h"
@@ -41,21 +41,18 @@ std::vector<std::size_t> parts_of_path(std::span<const brush::Pose> poses, doubl
 std::vector<ReachedPlace> reached_places(const mesh::SurfaceQuery& query, std::span<const brush::Pose> poses,
                                          std::span<const std::size_t> parts, const brush::Preset& preset, double texel);
 
-/// Balls round the texels of each cluster of the tiles of a model. Constant after it is built; reading is safe in
-/// several threads.
+/// Balls round the texels of each cluster of the tiles of a model, three texels wider: a tile at the border of a chart
+/// may hold texels of others, far away on the surface. Constant after it is built; reading is safe in several threads.
 class TileReach {
   public:
-    /// Cost: one pass over a ninth of all texels, in parallel.
-    explicit TileReach(const atlas::TexelMap& map);
+    /// Looks at no texel, which may lie in a file as yet.
+    TileReach(const atlas::TexelMap& map, const atlas::ClusterGraph& graph);
 
     /// Returns the tiles that meet the places.
     TilePlan tiles_at(std::span<const ReachedPlace> places) const;
 
   private:
     std::span<const Ball> balls_of(std::size_t slot, std::size_t end) const {
-        return std::span(clusters_).subspan(first_[slot], first_[end] - first_[slot]);
-    }
-    std::span<Ball> balls_of(std::size_t slot, std::size_t end) {
         return std::span(clusters_).subspan(first_[slot], first_[end] - first_[slot]);
     }
 

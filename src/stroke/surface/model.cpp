@@ -29,15 +29,42 @@ void check_memory(std::uint32_t size, atlas::TexelStore texels, std::size_t limi
                     size, size, needed >> 20, limit >> 20));
 }
 
-void finish(Model& model, atlas::TexelStore texels, const ProgressFn& progress) {
+// Takes texel map and cluster graph from the cache where they are packed, else makes them. Smaller maps are made in
+// less time than a person notices.
+void make_texels(Model& model, const ModelOptions& options) {
+    const ProgressFn& progress = options.progress;
+    const bool cached = !options.cache.folder().empty() && atlas::is_packed(options.texels, model.atlas.size);
+    std::optional<CacheKey> key;
+    if (cached) {
+        report(progress, "texel map", 0);
+        key = texels_key(*model.mesh, model.atlas);
+        StoredTexels stored;
+        if (options.cache.read(*key, [&](CacheReader& entry) { stored = get_texels(entry); })) {
+            model.texels = std::move(stored.map);
+            model.clusters = std::move(stored.clusters);
+            report(progress, "texel map", 1);
+            return;
+        }
+    }
+    model.texels = atlas::build_texel_map(*model.mesh, model.atlas, progress, options.texels);
+    release_free_memory();
+    model.clusters = atlas::build_cluster_graph(*model.mesh, model.atlas, model.texels, progress);
+    const std::size_t bytes = model.texels.n_slots() * (sizeof(atlas::TexelTile) + sizeof(atlas::PackedShape));
+    if (!key || bytes > options.cache.limit() / 2) return;
+    report(progress, "storing", 0);
+    options.cache.write(*key, [&](CacheWriter& entry) { put_texels(entry, model); });
+    options.cache.trim();
+    report(progress, "storing", 1);
+}
+
+void finish(Model& model, const ModelOptions& options) {
+    const ProgressFn& progress = options.progress;
     release_free_memory();
     keep_free_memory_below(std::size_t{1} << 20);  // few large blocks from here on
     report(progress, "search tree", 0);
     model.query = std::make_unique<mesh::SurfaceQuery>(*model.mesh);
     report(progress, "search tree", 1);
-    model.texels = atlas::build_texel_map(*model.mesh, model.atlas, progress, texels);
-    release_free_memory();
-    model.clusters = atlas::build_cluster_graph(*model.mesh, model.atlas, model.texels, progress);
+    make_texels(model, options);
     model.base_colour = ink::base_colour_of(*model.mesh, model.atlas, model.texels);
     release_free_memory();
 }
@@ -58,7 +85,7 @@ void give_atlas(Model& model, const atlas::UnwrapOptions& unwrap, const ModelOpt
     model.atlas = std::move(unwrapped.atlas);
     model.atlas_report = std::move(unwrapped.report);
     check_memory(side_of_pages(model.atlas.page_size(), model.atlas.pages), options.texels, options.memory_limit);
-    finish(model, options.texels, options.progress);
+    finish(model, options);
 }
 
 // Takes mesh and atlas from the cache, and what is not stored from the soup. False when they are not there.
@@ -73,14 +100,14 @@ bool restore_model(Model& model, mesh::PolygonSoup& soup, const CacheKey& key, c
     model.atlas = std::move(stored.atlas);
     model.atlas_report = std::move(stored.atlas_report);
     check_memory(side_of_pages(model.atlas.page_size(), model.atlas.pages), options.texels, options.memory_limit);
-    finish(model, options.texels, options.progress);
+    finish(model, options);
     return true;
 }
 
 }  // namespace
 
 DiskCache shared_model_cache() {
-    return DiskCache(cache_folder("models"));
+    return DiskCache(cache_folder("models"), std::uintmax_t{4} << 30);
 }
 
 std::size_t atlas_memory(std::uint32_t size, atlas::TexelStore texels) {
@@ -141,13 +168,17 @@ Model rescale_model(Model model, const ModelOptions& options) {
     return model;
 }
 
-Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ProgressFn& progress, atlas::TexelStore texels) {
+Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ModelOptions& options) {
     Model model;
     model.mesh = std::make_unique<mesh::TriangleMesh>(std::move(mesh));
     model.atlas = std::move(atlas);
-    check_memory(side_of_pages(model.atlas.page_size(), model.atlas.pages), texels, 0);
-    finish(model, texels, progress);
+    check_memory(side_of_pages(model.atlas.page_size(), model.atlas.pages), options.texels, options.memory_limit);
+    finish(model, options);
     return model;
+}
+
+Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ProgressFn& progress) {
+    return prepare_model(std::move(mesh), std::move(atlas), ModelOptions{.progress = progress});
 }
 
 }  // namespace tuft::stroke

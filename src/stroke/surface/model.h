@@ -36,7 +36,7 @@ struct ModelOptions {
     atlas::UnwrapOptions unwrap;  ///< likewise
     atlas::TexelStore texels = atlas::TexelStore::automatic;
     std::size_t memory_limit = 0;  ///< bytes; 0: `available_memory`
-    DiskCache cache;               ///< of repaired meshes and their atlases (model_cache.h)
+    DiskCache cache;               ///< of repaired meshes, their atlases and texel maps (model_cache.h)
     ProgressFn progress;
 };
 
@@ -45,14 +45,15 @@ struct ModelOptions {
 /// the same bits as one prepared anew.
 Model prepare_model(mesh::PolygonSoup soup, const ModelOptions& options = {});
 
-/// The same from an existing mesh and atlas, such as a project's.
-Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ProgressFn& progress = {},
-                    atlas::TexelStore texels = atlas::TexelStore::automatic);
+/// The same from an existing mesh and atlas, such as a project's. Of the options only `texels`, `cache` and `progress`
+/// are read.
+Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ModelOptions& options);
+Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ProgressFn& progress = {});
 
 /// Returns the same mesh with a new atlas, of another size or with new charts.
 Model rescale_model(Model model, const ModelOptions& options);
 
-/// Returns the cache of the user's prepared models: `tuft/models` in $XDG_CACHE_HOME or ~/.cache, 2 GiB.
+/// Returns the cache of the user's prepared models: `tuft/models` in $XDG_CACHE_HOME or ~/.cache, 4 GiB.
 DiskCache shared_model_cache();
 
 /// Returns an upper bound for the memory of painting on an atlas of size × size texels, bytes.

@@ -1,5 +1,6 @@
 #include "stroke/surface/model_cache.h"
 
+#include <algorithm>
 #include <array>
 
 #include "atlas/unwrap/fault.h"
@@ -14,6 +15,19 @@ constexpr std::size_t kMostNested = 8;  // messages inside a message
 
 void require(bool good) {
     if (!good) CacheReader::fail();
+}
+
+void add_code(CacheKey& key) {
+    key.add_text(kPreparationCode);
+    const BuildFacts& facts = build_facts();
+    key.add_text(facts.compiler);
+    key.add_text(facts.build_type);
+    for (const auto& [name, version] : facts.libraries) key.add_text(name), key.add_text(version);
+}
+
+template <class T>
+void add(CacheKey& key, const std::vector<T>& values) {
+    key.add_array(std::span<const T>(values));
 }
 
 // Counts of a report, in the order in which they are stored.
@@ -103,24 +117,24 @@ void get_atlas(CacheReader& entry, atlas::Atlas& a, atlas::AtlasReport& r) {
     r.smallest_gap = static_cast<int>(counts[4]);
 }
 
+bool starts_of(const std::vector<std::uint32_t>& starts, std::size_t lists, std::size_t elements) {
+    return starts.size() == lists + 1 && starts.front() == 0 && starts.back() == elements &&
+           std::ranges::is_sorted(starts);
+}
+
 }  // namespace
 
 CacheKey model_key(const mesh::PolygonSoup& soup, const ModelOptions& options) {
     CacheKey key("model 2");
-    key.add_text(kPreparationCode);
-    const BuildFacts& facts = build_facts();
-    key.add_text(facts.compiler);
-    key.add_text(facts.build_type);
-    for (const auto& [name, version] : facts.libraries) key.add_text(name), key.add_text(version);
-
-    key.add_array(std::span<const Vec3>(soup.points));
-    key.add_array(std::span<const std::uint32_t>(soup.corners));
-    key.add_array(std::span<const std::uint32_t>(soup.polygon_start));
-    key.add_array(std::span<const Vec2f>(soup.corner_uvs));
-    key.add_array(std::span<const Vec3f>(soup.corner_normals));
-    key.add_array(std::span<const std::array<std::uint8_t, 4>>(soup.point_colours));
-    key.add_array(std::span<const std::uint32_t>(soup.polygon_groups));
-    key.add_array(std::span<const std::uint32_t>(soup.polygon_parts));
+    add_code(key);
+    add(key, soup.points);
+    add(key, soup.corners);
+    add(key, soup.polygon_start);
+    add(key, soup.corner_uvs);
+    add(key, soup.corner_normals);
+    add(key, soup.point_colours);
+    add(key, soup.polygon_groups);
+    add(key, soup.polygon_parts);
     key.add(soup.group_names.size());
     for (const std::string& name : soup.group_names) key.add_text(name);
     key.add(soup.materials.size());
@@ -177,6 +191,70 @@ StoredModel get_model(CacheReader& entry, const mesh::PolygonSoup& soup) {
     get_atlas(entry, model.atlas, model.atlas_report);
     require(model.atlas.triangle_chart.size() == m.n_triangles() && atlas::fault_of(model.atlas).empty());
     return model;
+}
+
+CacheKey texels_key(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas) {
+    CacheKey key("texels 1");
+    add_code(key);
+    add(key, mesh.positions);
+    add(key, mesh.triangles);
+    add(key, mesh.corner_normals);
+    add(key, mesh.neighbours);
+    key.add(atlas.size), key.add(atlas.pages), key.add(atlas.gutter), key.add(atlas.n_charts);
+    key.add(atlas.texel_size);
+    add(key, atlas.udims);
+    add(key, atlas.corner_uvs);
+    add(key, atlas.triangle_chart);
+    return key;
+}
+
+void put_texels(CacheWriter& entry, const Model& model) {
+    const atlas::TexelMap& map = model.texels;
+    entry.put(std::vector<std::uint32_t>{map.size, map.tiles_per_side});
+    entry.put(std::vector<double>{map.texel_size});
+    entry.put(map.slot_of_tile);
+    entry.put(map.tile_of_slot);
+    entry.put(map.boxes);
+    entry.put(map.reach);
+    entry.put(map.cluster_start);
+    entry.put(map.cluster_chart);
+    entry.put(model.clusters.clusters);
+    entry.put(model.clusters.edge_start);
+    entry.put(model.clusters.edges);
+    entry.put_to_map(map.tiles);
+    entry.put_to_map(map.packed);
+}
+
+StoredTexels get_texels(CacheReader& entry) {
+    StoredTexels stored;
+    auto& [map, graph] = stored;
+    const auto sizes = entry.get<std::uint32_t>();
+    require(sizes.size() == 2 && sizes[1] <= 1024);
+    map.size = sizes[0], map.tiles_per_side = sizes[1];
+    map.texel_size = entry.get_one<double>();
+    map.slot_of_tile = entry.get<std::uint32_t>();
+    map.tile_of_slot = entry.get<std::uint32_t>();
+    map.boxes = entry.get<atlas::PackedBox>();
+    map.reach = entry.get<float>();
+    map.cluster_start = entry.get<std::uint32_t>();
+    map.cluster_chart = entry.get<std::uint32_t>();
+    graph.clusters = entry.get<atlas::TexelCluster>();
+    graph.edge_start = entry.get<std::uint32_t>();
+    graph.edges = entry.get<atlas::ClusterEdge>();
+    map.tiles = entry.map<atlas::TexelTile>();
+    map.packed = entry.map<atlas::PackedShape>();
+    graph.cluster_start = map.cluster_start;
+
+    const std::size_t n = map.n_slots(), n_tiles = map.slot_of_tile.size(), n_clusters = map.cluster_chart.size();
+    require(n_tiles == std::size_t{map.tiles_per_side} * map.tiles_per_side && map.tile_of_slot.size() == n &&
+            map.packed.size() == n && map.reach.size() == n && map.boxes.size() == n_clusters &&
+            graph.n_clusters() == n_clusters);
+    require(std::ranges::all_of(map.slot_of_tile, [n](std::uint32_t slot) { return slot < n || slot == kNone; }));
+    require(std::ranges::all_of(map.tile_of_slot, [=](std::uint32_t tile) { return tile < n_tiles; }));
+    require(starts_of(map.cluster_start, n, n_clusters) && starts_of(graph.edge_start, n_clusters, graph.edges.size()));
+    require(std::ranges::all_of(graph.clusters, [n](const atlas::TexelCluster& c) { return c.slot < n; }));
+    require(std::ranges::all_of(graph.edges, [=](const atlas::ClusterEdge& e) { return e.to < n_clusters; }));
+    return stored;
 }
 
 }  // namespace tuft::stroke

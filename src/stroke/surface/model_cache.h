@@ -4,8 +4,8 @@
 #include "stroke/surface/model.h"
 
 /// \file
-/// Repaired meshes and their atlases, stored between runs. `prepare_model` reads and writes them; texel map and
-/// cluster graph are computed anew, because that is faster than reading their 29 bytes a texel from a disk.
+/// Repaired meshes and their atlases, and packed texel maps with their cluster graphs, stored between runs.
+/// `prepare_model` reads and writes them.
 namespace tuft::stroke {
 
 /// Returns the key of a soup that is prepared with these options. It also covers the sources of the modules that
@@ -26,5 +26,22 @@ void put_model(CacheWriter& entry, const Model& model, std::size_t n_reader_warn
 /// Reads what `put_model` wrote, and takes names and scene from the soup. Throws `Error` for an entry that is damaged:
 /// mesh and atlas are checked as a project's (`fault_of`).
 StoredModel get_model(CacheReader& entry, const mesh::PolygonSoup& soup);
+
+/// Returns the key of the packed texel map and the cluster graph of a model's mesh and atlas; what it covers besides is
+/// as in `model_key`.
+CacheKey texels_key(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas);
+
+/// Writes texel map and cluster graph of a model whose map is packed.
+void put_texels(CacheWriter& entry, const Model& model);
+
+/// A texel map and its graph.
+struct StoredTexels {
+    atlas::TexelMap map;
+    atlas::ClusterGraph clusters;
+};
+
+/// Reads what `put_texels` wrote; tiles stay in the file. Throws `Error` for an entry that is damaged: hashes, sizes,
+/// numbers of tiles and clusters are checked.
+StoredTexels get_texels(CacheReader& entry);
 
 }  // namespace tuft::stroke
