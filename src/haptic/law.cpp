@@ -127,7 +127,7 @@ void settle_tank(const LawOptions& options, LawState& s, const LawInput& in) {
         s.tank.energy -= acted.taken + kCountError * count * glm::length(change);
         s.tank.counted_force += change;
         s.tank.landed += glm::length(moved);
-        s.tank.energy += paid_by_friction(options) * glm::length(moved);
+        s.tank.energy += paid_by_friction(options) * std::max(0.0, glm::length(moved) - count);
         s.tank.played = in.arm;
         s.tank.acted = {};
         s.tank.n_acted = 0;

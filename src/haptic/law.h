@@ -25,8 +25,9 @@
 ///    (a proxy [Ruspini1997]); along them acts Coulomb friction. The arm never shows more than K.
 /// 4. Restore, optional: s += (T / 0.15 s) (x − y) takes the softness of the coupling away in the long run. The hand
 /// has
-///    then pressed a softer spring than the hair that it feels. The friction of the arm pays for it: e += f_r |Δx′|,
-///    and f_r = 0.7 f_c is added to the limits of |f| in step 6. Port and wrist alone may then give energy back.
+///    then pressed a softer spring than the hair that it feels. The friction of the arm pays for it: e += f_r (|Δx′| −
+///    count), and f_r = 0.7 f_c is added to the limits of |f| in step 6. Port and wrist alone may then give energy
+///    back.
 /// 5. Clamp to the device and to 7.9 N. A moment is scaled with its force. While only hair touches, f changes by at
 ///    most k_max |Δx̂| + 0.12 N, but for a fade, in which it may get smaller at once: the damper alone gives 0.3 N in a
 ///    period to a hand that turns round at 60 m/s².

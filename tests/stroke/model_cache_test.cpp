@@ -159,7 +159,7 @@ TEST_F(ModelCache, ATexelMapThatPointsOutsideItsArraysIsMadeAgain) {
         change(bad);
         const CacheKey key = texels_key(*made.mesh, made.atlas);
         ASSERT_TRUE(options.cache.write(key, [&](CacheWriter& entry) { put_texels(entry, bad); }));
-        EXPECT_FALSE(options.cache.read(key, [](CacheReader& entry) { get_texels(entry); }));
+        EXPECT_FALSE(options.cache.read(key, [&](CacheReader& entry) { get_texels(entry, made.atlas); }));
     };
     with([](Model& m) { m.texels.slot_of_tile[0] = 1'000'000; });
     with([](Model& m) { m.texels.tile_of_slot[0] = 1'000'000; });
@@ -169,6 +169,18 @@ TEST_F(ModelCache, ATexelMapThatPointsOutsideItsArraysIsMadeAgain) {
     with([](Model& m) { m.clusters.edge_start.back() += 1; });
     with([](Model& m) { m.clusters.edges[3].to = 1'000'000; });
     with([](Model& m) { m.clusters.clusters[3].slot = 1'000'000; });
+    with([](Model& m) { m.clusters.clusters[3].index += 1; });
+    with([](Model& m) { m.clusters.clusters[3].last_row = 16; });
+    with([](Model& m) { m.clusters.clusters[3].centre.y = NAN; });
+    with([](Model& m) { m.texels.size = 8192; });
+    with([](Model& m) { m.texels.cluster_chart[3] = m.atlas.n_charts; });
+    with([](Model& m) { m.texels.boxes[3].step = INFINITY; });
+    with([](Model& m) {
+        const auto tiles =
+            std::make_shared<std::vector<atlas::TexelTile>>(m.texels.tiles.begin(), m.texels.tiles.end());
+        tiles->back().cluster[7] = 200;
+        m.texels.tiles = {tiles, std::span<const atlas::TexelTile>(*tiles)};
+    });
 }
 
 TEST_F(ModelCache, EveryOptionAndEveryPointChangesTheKey) {

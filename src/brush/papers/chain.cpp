@@ -40,6 +40,7 @@ double rest_half_width(const Preset& p, double u) {
 struct OneSpine {
     Vec3 offset{0};                ///< m, of its root, ferrule frame
     std::vector<Vec2> bend;        ///< [n]
+    std::vector<Vec2> rest;        ///< [n] ρ of the last step
     std::vector<Vec3> node;        ///< [n+1] m, world
     std::vector<double> pressure;  ///< [n+1]
 };
@@ -89,7 +90,6 @@ class ChainModel final : public SpineModel {
     std::vector<double> flat_;                 ///< [n] radians, of a joint of hair bent evenly from upright to flat
     std::vector<OneSpine> spines_;
     std::array<std::vector<double>, 2> lateral_;  ///< [n+1] m, d of the last step: along e, against it
-    std::vector<Vec2> rest_;                      ///< [n] ρ of the last step
     Pose pose_;
     Vec3 wide_{1, 0, 0};  ///< ferrule frame
 };
@@ -119,7 +119,7 @@ void ChainModel::straighten(const Pose& pose) {
     pose_ = pose;
     wide_ = {1, 0, 0};
     minor_ = radius_;
-    rest_.assign(flat_.size(), Vec2{0});
+    for (OneSpine& spine : spines_) spine.rest.assign(flat_.size(), Vec2{0});
     for (std::vector<double>& side : lateral_) {
         side = radius_;
         for (double& d : side) d *= 1 - options_.effective_radius;
@@ -245,11 +245,11 @@ ChainSolution ChainModel::solve(OneSpine& spine, const SpineModelInput& input) c
     std::vector<Vec3> carried = chain_nodes(chain_, root / length, frame, spine.bend);
     for (Vec3& x : carried) x = input.pose.position + length * x;
     const std::vector<ChainContact> contact = contacts_of(spine, input, carried);
-    const std::vector<Vec2> rest = plastic_part(spine, input.wetness);
+    spine.rest = plastic_part(spine, input.wetness);
     ChainProblem problem;
     problem.root = root / length;
     problem.frame = frame;
-    problem.rest = rest;
+    problem.rest = spine.rest;
     problem.before = spine.bend;
     problem.change_weight = options_.change_weight;
     problem.contact = contact;
@@ -265,10 +265,14 @@ ChainSolution ChainModel::solve(OneSpine& spine, const SpineModelInput& input) c
     return solution;
 }
 
-/// Bending moment of a joint of the first spine, B0/L.
+/// Bending moment of a joint, mean of the spines, B0/L.
 double ChainModel::moment_of(std::size_t joint) const {
-    const double size = glm::length(spines_[0].bend[joint] - rest_[joint]);
-    return chain_.coefficient[joint] * chain_.exponent * std::pow(size, chain_.exponent - 1);
+    double sum = 0;
+    for (const OneSpine& spine : spines_) {
+        const double size = glm::length(spine.bend[joint] - spine.rest[joint]);
+        sum += chain_.coefficient[joint] * chain_.exponent * std::pow(size, chain_.exponent - 1);
+    }
+    return sum / static_cast<double>(spines_.size());
 }
 
 void ChainModel::add_forces(const ChainSolution& solution, const OneSpine& spine, TuftState& state) const {
@@ -287,7 +291,6 @@ void ChainModel::add_forces(const ChainSolution& solution, const OneSpine& spine
 
 TuftState ChainModel::step(const SpineModelInput& input) {
     const std::vector<OneSpine> before = spines_;
-    rest_ = plastic_part(spines_[0], input.wetness);
     std::vector<ChainSolution> solutions;
     for (OneSpine& spine : spines_) solutions.push_back(solve(spine, input));
     pose_ = input.pose;

@@ -19,7 +19,8 @@ void add_hand(CLI::App* app, DeviceWork& d) {
                     "seconds that the arm is read (default: 10); the trials of a simulated one come on top")
         ->check(number_in(0.1, 86400));
     app->add_option("--brush", d.brush, "brush in the holder (default: wolf-medium)")->type_name("BRUSH");
-    app->add_option("--spine", d.spine, "how the tuft bends: rod (default: as the brush says) or table (query table)")
+    app->add_option("--spine", d.spine,
+                    "how the tuft bends: rod (live solve; default: as the brush says) or table (query table)")
         ->check(CLI::IsMember({"rod", "table"}));
     app->add_option("--model", d.model, "model that the brush touches (default: the bowl)");
     app->add_flag("--restore", d.restore,

@@ -66,7 +66,7 @@ int run(const Film& a) {
     else
         check_folder(a.output);
     Console console(a.common.quiet);
-    const auto project = open_project(a.replay.project, io::Access::read, console);
+    const auto project = open_project(a.replay.project, io::Access::read, console, model_cache(a.replay.surface));
     const stroke::Model model = replay_model(a.replay, *project, console);
     stroke::Document painting(model, {.tip_lags = tip_lag_cache(a.replay.surface)});
     painting.use(project->substrate);

@@ -332,7 +332,7 @@ int paint(const Paint& a, const StrokeSource& source) {
         goes_on && (a.output.project.empty() || std::filesystem::equivalent(a.output.project, a.model, no_matter));
     const auto reserved = in_place ? std::nullopt : reserve(a.output.project, console);
     const auto before = goes_on ? open_project(a.model, in_place ? io::Access::write : io::Access::read, console,
-                                               a.surface.no_cache ? DiskCache() : stroke::shared_model_cache())
+                                               model_cache(a.surface))
                                 : nullptr;
     std::vector<stroke::JournalEntry> strokes = source.load(console);
     Surface surface = a.surface;

@@ -171,7 +171,7 @@ int run(const Replay& a) {
     check_output(a.moved);
     Console console(a.common.quiet);
     const auto reserved = reserve(a.out_project, console);
-    const auto project = open_project(a.project, io::Access::read, console);
+    const auto project = open_project(a.project, io::Access::read, console, model_cache(a.surface));
     outputs.frame = a.model.empty() ? project->frame : frame_of(a.surface.unit, a.surface.up, project->frame);
     const stroke::Model model = replay_model(a, *project, console);
 

@@ -178,7 +178,7 @@ haptic::HandPath hand_of(const DeviceWork& a, haptic::HandMotion motion, const h
 
 haptic::Fault run_for(haptic::Loop& loop, double seconds) {
     using Clock = std::chrono::steady_clock;
-    constexpr auto kPatience = 500ms;
+    constexpr auto kPatience = 500ms, kGlitch = 100ms;
     loop.start();
     const auto end = Clock::now() + std::chrono::duration<double>(seconds);
     auto well = Clock::now();
@@ -189,10 +189,8 @@ haptic::Fault run_for(haptic::Loop& loop, double seconds) {
         }
         const haptic::Fault seen = loop.status().fault;
         if (seen == haptic::Fault::none) well = now;
-        if (now - well > kPatience) {
-            fault = seen;
-            break;
-        }
+        fault = now - well > kGlitch ? seen : haptic::Fault::none;
+        if (now - well > kPatience) break;
         std::this_thread::sleep_for(kLook);
     }
     loop.stop();

@@ -96,6 +96,8 @@ std::string where_of(const std::string& brush, const haptic::TrialPlace& place, 
 }
 
 std::vector<brush::Tuft> tufts_of(const DeviceWork& a) {
+    if (a.trial.all_brushes && a.spine == "table")
+        throw UsageError("--all-brushes: the query table bends no brush of several spines");
     std::vector<brush::Tuft> tufts;
     for (const std::string& name : a.trial.all_brushes ? brush::list_presets() : std::vector{a.brush})
         tufts.push_back(brush::make_tuft(brush_in_hand(a, name)));

@@ -101,9 +101,13 @@ DiskCache tip_lag_cache(const Surface& s) {
     return s.no_cache ? DiskCache() : stroke::shared_tip_lag_cache();
 }
 
+DiskCache model_cache(const Surface& s) {
+    return s.no_cache ? DiskCache() : stroke::shared_model_cache();
+}
+
 Loaded load_model(const fs::path& path, const Surface& s, Console& console) {
     stroke::ModelOptions options = model_options(s, console);
-    if (!s.no_cache) options.cache = stroke::shared_model_cache();
+    options.cache = model_cache(s);
     options.repair.progress = options.progress;
     Read read = read_file(path, s, options.repair, console);
     options.repair.progress = nullptr;

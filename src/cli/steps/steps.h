@@ -28,6 +28,8 @@ stroke::ModelOptions model_options(const Surface& surface, Console& console);
 
 /// Returns the cache of measured tip lags for `stroke::DocumentOptions`: none with `--no-cache`.
 DiskCache tip_lag_cache(const Surface& surface);
+/// Returns the cache of prepared models, or none with `--no-cache`.
+DiskCache model_cache(const Surface& surface);
 
 /// A model and how its file was read.
 struct Loaded {

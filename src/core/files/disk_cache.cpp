@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -27,11 +28,14 @@ constexpr const char* kExtension = ".entry";
 // What a killed process left unfinished is deleted after a day: until then another may still be writing it.
 constexpr auto kUnfinishedFor = std::chrono::hours(24);
 
-// What is mapped is hashed in pieces of so many bytes, each hash the seed of the next.
-constexpr std::size_t kPiece = std::size_t{1} << 20;
-
 std::uint64_t before_mapped(std::uint64_t at) {
     return (CacheWriter::kMapped - at % CacheWriter::kMapped) % CacheWriter::kMapped;
+}
+
+/// NFS, SMB, CIFS, 9P, Ceph and what FUSE serves.
+bool is_remote(const struct statfs& system) {
+    constexpr std::uint32_t kRemote[] = {0x6969, 0x517b, 0xff534d42, 0xfe534d42, 0x01021997, 0x00c36400, 0x65735546};
+    return std::ranges::find(kRemote, static_cast<std::uint32_t>(system.f_type)) != std::end(kRemote);
 }
 
 std::array<std::uint64_t, 3> head_of(const CacheKey& key) {
@@ -57,10 +61,11 @@ void CacheWriter::put_bytes(const void* data, std::size_t size) {
     write(data, size);
 }
 
-void CacheWriter::put_large(const void* data, std::size_t size) {
+void CacheWriter::put_large(const void* data, std::size_t n, std::size_t element) {
     const auto* const bytes = static_cast<const char*>(data);
+    const std::size_t size = n * element, piece = in_piece(element) * element;
     std::uint64_t hash = 0;
-    for (std::size_t i = 0; i < size; i += kPiece) hash = hash_bytes(bytes + i, std::min(kPiece, size - i), hash);
+    for (std::size_t i = 0; i < size; i += piece) hash = hash_bytes(bytes + i, std::min(piece, size - i), hash);
     const std::array<std::uint64_t, 2> head{size, hash};
     write(head.data(), sizeof(head));
     const std::vector<char> padding(before_mapped(at_));
@@ -95,6 +100,8 @@ bool OpenFile::read(std::uint64_t at, void* out, std::uint64_t size) const {
 }
 
 std::shared_ptr<const void> OpenFile::map(std::uint64_t at, std::uint64_t size) const {
+    struct statfs system {};
+    if (::fstatfs(descriptor_, &system) != 0 || is_remote(system)) return nullptr;
     void* const bytes = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor_, static_cast<off_t>(at));
     if (bytes == MAP_FAILED) return nullptr;
     return {bytes, [size](const void* p) { ::munmap(const_cast<void*>(p), size); }};
@@ -119,22 +126,16 @@ void CacheReader::get_bytes(void* out, std::uint64_t size) {
     if (hash_bytes(out, size) != hash_) fail();
 }
 
-std::shared_ptr<const void> CacheReader::map_bytes(std::uint64_t& size) {
-    size = next_size();
+std::uint64_t CacheReader::begin_mapped() {
+    const std::uint64_t size = next_size();
     at_ += before_mapped(at_);
     if (at_ > file_.size() || size > file_.size() - at_) fail();
-    std::vector<char> piece(std::min<std::uint64_t>(kPiece, size));
-    std::uint64_t hash = 0;
-    for (std::uint64_t i = 0; i < size; i += kPiece) {
-        const std::uint64_t n = std::min<std::uint64_t>(kPiece, size - i);
-        if (!file_.read(at_ + i, piece.data(), n)) fail();
-        hash = hash_bytes(piece.data(), n, hash);
-    }
-    if (hash != hash_) fail();
-    std::shared_ptr<const void> bytes;
-    if (size > 0 && !(bytes = file_.map(at_, size))) fail();
-    at_ += size;
-    return bytes;
+    return size;
+}
+
+void CacheReader::read_piece(std::uint64_t from, void* out, std::uint64_t size, std::uint64_t& hash) const {
+    if (!file_.read(at_ + from, out, size)) fail();
+    hash = hash_bytes(out, size, hash);
 }
 
 std::string CacheReader::get_text() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -76,14 +77,18 @@ class CacheWriter {
     template <class T>
     void put_to_map(const SharedArray<T>& values) {
         static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kMapped);
-        put_large(values.data(), values.size() * sizeof(T));
+        put_large(values.data(), values.size(), sizeof(T));
     }
 
     static constexpr std::uint64_t kMapped = 65536;  ///< alignment in the file: every system's pages divide it
+    /// Elements of so many bytes that are hashed at a time, each hash the seed of the next.
+    static constexpr std::size_t in_piece(std::size_t element) {
+        return std::max<std::size_t>(1, (std::size_t{1} << 20) / element);
+    }
 
   private:
     void put_bytes(const void* data, std::size_t size);
-    void put_large(const void* data, std::size_t size);
+    void put_large(const void* data, std::size_t n, std::size_t element);
     void write(const void* data, std::size_t size);
 
     std::ostream& out_;
@@ -105,7 +110,8 @@ class OpenFile {
     /// Returns false unless all bytes were read.
     bool read(std::uint64_t at, void* out, std::uint64_t size) const;
     /// Maps a part that begins at a multiple of `CacheWriter::kMapped` and is not empty; null when it cannot. The
-    /// mapping outlives the object, and the file's name.
+    /// mapping outlives the object, and the file's name. A file system over a network is not mapped: a page that does
+    /// not come would end the process.
     std::shared_ptr<const void> map(std::uint64_t at, std::uint64_t size) const;
 
   private:
@@ -140,14 +146,30 @@ class CacheReader {
     /// Returns the next text.
     std::string get_text();
     /// Returns an array that `put_to_map` stored. Its bytes are read once for their hash, through a small buffer; the
-    /// elements stay in the file.
+    /// elements stay in the file, or are read where it cannot be mapped. `sound` is called with all elements, some at a
+    /// time, and the index of the first of them; where it returns false the entry is damaged.
     template <class T>
-    SharedArray<T> map() {
+    SharedArray<T> map(const std::function<bool(std::span<const T>, std::size_t)>& sound) {
         static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= CacheWriter::kMapped);
-        std::uint64_t size = 0;
-        std::shared_ptr<const void> bytes = map_bytes(size);
+        const std::uint64_t size = begin_mapped();
         if (size % sizeof(T) != 0) fail();
-        const std::span<const T> elements(static_cast<const T*>(bytes.get()), size / sizeof(T));
+        const std::size_t n = size / sizeof(T), most = CacheWriter::in_piece(sizeof(T));
+        std::vector<T> piece(std::min(n, most));
+        std::uint64_t hash = 0;
+        for (std::size_t i = 0; i < n; i += most) {
+            const std::span<T> now(piece.data(), std::min(most, n - i));
+            read_piece(i * sizeof(T), now.data(), now.size_bytes(), hash);
+            if (!sound(now, i)) fail();
+        }
+        if (hash != hash_) fail();
+        std::shared_ptr<const void> bytes = n > 0 ? file_.map(at_, size) : nullptr;
+        if (!bytes && n > 0) {
+            const auto owned = std::make_shared<std::vector<T>>(n);
+            if (!file_.read(at_, owned->data(), size)) fail();
+            bytes = {owned, owned->data()};
+        }
+        at_ += size;
+        const std::span<const T> elements(static_cast<const T*>(bytes.get()), n);
         return {std::move(bytes), elements};
     }
 
@@ -157,7 +179,8 @@ class CacheReader {
   private:
     std::uint64_t next_size();
     void get_bytes(void* out, std::uint64_t size);
-    std::shared_ptr<const void> map_bytes(std::uint64_t& size);
+    std::uint64_t begin_mapped();
+    void read_piece(std::uint64_t from, void* out, std::uint64_t size, std::uint64_t& hash) const;
 
     const OpenFile& file_;
     std::uint64_t at_ = 0;  ///< bytes

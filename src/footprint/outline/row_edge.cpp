@@ -69,7 +69,7 @@ Recycled<brush::Branch> bound_on_edge(const brush::TuftState& tuft, const Frame&
                 // At the height that is midway, where the hair between both spines is.
                 const double midway =
                     0.5 * std::abs(glm::dot(to, normal) / glm::dot(broad, normal)) / Trail::kStripChord;
-                side = std::lerp(half, std::clamp(midway, kLeastPart * half, half), on_edge);
+                side = std::min(side, std::lerp(half, std::clamp(midway, kLeastPart * half, half), on_edge));
             }
             if (up + down >= 2 * half) continue;
             brush::Section& s = out[k].sections[i];

@@ -41,7 +41,7 @@ std::vector<std::size_t> parts_of_path(std::span<const brush::Pose> poses, doubl
 std::vector<ReachedPlace> reached_places(const mesh::SurfaceQuery& query, std::span<const brush::Pose> poses,
                                          std::span<const std::size_t> parts, const brush::Preset& preset, double texel);
 
-/// Balls round the texels of each cluster of the tiles of a model, three texels wider: a tile at the border of a chart
+/// Balls round the texels of each cluster of the tiles of a model, four texels wider: a tile at the border of a chart
 /// may hold texels of others, far away on the surface. Constant after it is built; reading is safe in several threads.
 class TileReach {
   public:

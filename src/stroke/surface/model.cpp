@@ -34,12 +34,13 @@ void check_memory(std::uint32_t size, atlas::TexelStore texels, std::size_t limi
 void make_texels(Model& model, const ModelOptions& options) {
     const ProgressFn& progress = options.progress;
     const bool cached = !options.cache.folder().empty() && atlas::is_packed(options.texels, model.atlas.size);
+    const DiskCache cache = texels_cache(options.cache);
     std::optional<CacheKey> key;
     if (cached) {
         report(progress, "texel map", 0);
         key = texels_key(*model.mesh, model.atlas);
         StoredTexels stored;
-        if (options.cache.read(*key, [&](CacheReader& entry) { stored = get_texels(entry); })) {
+        if (cache.read(*key, [&](CacheReader& entry) { stored = get_texels(entry, model.atlas); })) {
             model.texels = std::move(stored.map);
             model.clusters = std::move(stored.clusters);
             report(progress, "texel map", 1);
@@ -50,10 +51,10 @@ void make_texels(Model& model, const ModelOptions& options) {
     release_free_memory();
     model.clusters = atlas::build_cluster_graph(*model.mesh, model.atlas, model.texels, progress);
     const std::size_t bytes = model.texels.n_slots() * (sizeof(atlas::TexelTile) + sizeof(atlas::PackedShape));
-    if (!key || bytes > options.cache.limit() / 2) return;
+    if (!key || bytes > cache.limit() / 2) return;
     report(progress, "storing", 0);
-    options.cache.write(*key, [&](CacheWriter& entry) { put_texels(entry, model); });
-    options.cache.trim();
+    cache.write(*key, [&](CacheWriter& entry) { put_texels(entry, model); });
+    cache.trim();
     report(progress, "storing", 1);
 }
 
@@ -107,7 +108,7 @@ bool restore_model(Model& model, mesh::PolygonSoup& soup, const CacheKey& key, c
 }  // namespace
 
 DiskCache shared_model_cache() {
-    return DiskCache(cache_folder("models"), std::uintmax_t{4} << 30);
+    return DiskCache(cache_folder("models"));
 }
 
 std::size_t atlas_memory(std::uint32_t size, atlas::TexelStore texels) {

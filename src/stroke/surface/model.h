@@ -45,15 +45,16 @@ struct ModelOptions {
 /// the same bits as one prepared anew.
 Model prepare_model(mesh::PolygonSoup soup, const ModelOptions& options = {});
 
-/// The same from an existing mesh and atlas, such as a project's. Of the options only `texels`, `cache` and `progress`
-/// are read.
+/// The same from an existing mesh and atlas, such as a project's. Of the options only `texels`,
+/// `memory_limit`, `cache` and `progress` are read.
 Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ModelOptions& options);
 Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ProgressFn& progress = {});
 
 /// Returns the same mesh with a new atlas, of another size or with new charts.
 Model rescale_model(Model model, const ModelOptions& options);
 
-/// Returns the cache of the user's prepared models: `tuft/models` in $XDG_CACHE_HOME or ~/.cache, 4 GiB.
+/// Returns the cache of the user's prepared models: `tuft/models` in $XDG_CACHE_HOME or ~/.cache, 2 GiB and
+/// 4 GiB of texel maps.
 DiskCache shared_model_cache();
 
 /// Returns an upper bound for the memory of painting on an atlas of size × size texels, bytes.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "atlas/unwrap/fault.h"
 #include "core/system/build_facts.h"
@@ -122,6 +123,30 @@ bool starts_of(const std::vector<std::uint32_t>& starts, std::size_t lists, std:
            std::ranges::is_sorted(starts);
 }
 
+bool is_length(float metres) {
+    return metres >= 0 && std::isfinite(metres);
+}
+
+bool is_finite(const Vec3f& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// Whether cluster `i` is one of its tile, of a chart, and of finite numbers.
+bool is_cluster(const atlas::TexelCluster& c, std::size_t i, const atlas::TexelMap& map, const atlas::Atlas& atlas) {
+    if (c.slot >= map.tile_of_slot.size() || i != std::size_t{map.cluster_start[c.slot]} + c.index ||
+        i >= map.cluster_start[c.slot + 1])
+        return false;
+    return c.chart < atlas.n_charts && c.first_row <= c.last_row && c.last_row < atlas::kTile && is_length(c.radius) &&
+           std::isfinite(c.cone_cos) && is_finite(c.centre) && is_finite(c.normal) && is_finite(c.tangent) &&
+           is_finite(c.outward);
+}
+
+/// Whether all texels of a tile are of its `n` clusters.
+bool is_tile(const atlas::TexelTile& tile, std::uint32_t n) {
+    return std::ranges::all_of(tile.area, is_length) &&
+           std::ranges::all_of(tile.cluster, [n](std::uint8_t c) { return c < n || c == atlas::kNoCluster; });
+}
+
 }  // namespace
 
 CacheKey model_key(const mesh::PolygonSoup& soup, const ModelOptions& options) {
@@ -208,6 +233,11 @@ CacheKey texels_key(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas) {
     return key;
 }
 
+DiskCache texels_cache(const DiskCache& models) {
+    if (models.folder().empty()) return {};
+    return DiskCache(models.folder() / "texels", std::uintmax_t{4} << 30);
+}
+
 void put_texels(CacheWriter& entry, const Model& model) {
     const atlas::TexelMap& map = model.texels;
     entry.put(std::vector<std::uint32_t>{map.size, map.tiles_per_side});
@@ -225,11 +255,11 @@ void put_texels(CacheWriter& entry, const Model& model) {
     entry.put_to_map(map.packed);
 }
 
-StoredTexels get_texels(CacheReader& entry) {
+StoredTexels get_texels(CacheReader& entry, const atlas::Atlas& atlas) {
     StoredTexels stored;
     auto& [map, graph] = stored;
     const auto sizes = entry.get<std::uint32_t>();
-    require(sizes.size() == 2 && sizes[1] <= 1024);
+    require(sizes.size() == 2 && sizes[0] == atlas.size && sizes[1] == (sizes[0] + atlas::kTile - 1) / atlas::kTile);
     map.size = sizes[0], map.tiles_per_side = sizes[1];
     map.texel_size = entry.get_one<double>();
     map.slot_of_tile = entry.get<std::uint32_t>();
@@ -241,19 +271,32 @@ StoredTexels get_texels(CacheReader& entry) {
     graph.clusters = entry.get<atlas::TexelCluster>();
     graph.edge_start = entry.get<std::uint32_t>();
     graph.edges = entry.get<atlas::ClusterEdge>();
-    map.tiles = entry.map<atlas::TexelTile>();
-    map.packed = entry.map<atlas::PackedShape>();
     graph.cluster_start = map.cluster_start;
 
-    const std::size_t n = map.n_slots(), n_tiles = map.slot_of_tile.size(), n_clusters = map.cluster_chart.size();
-    require(n_tiles == std::size_t{map.tiles_per_side} * map.tiles_per_side && map.tile_of_slot.size() == n &&
-            map.packed.size() == n && map.reach.size() == n && map.boxes.size() == n_clusters &&
-            graph.n_clusters() == n_clusters);
+    const std::size_t n = map.tile_of_slot.size(), n_tiles = map.slot_of_tile.size(),
+                      n_clusters = map.cluster_chart.size();
+    require(n_tiles == std::size_t{map.tiles_per_side} * map.tiles_per_side && map.reach.size() == n &&
+            map.boxes.size() == n_clusters && graph.n_clusters() == n_clusters);
     require(std::ranges::all_of(map.slot_of_tile, [n](std::uint32_t slot) { return slot < n || slot == kNone; }));
     require(std::ranges::all_of(map.tile_of_slot, [=](std::uint32_t tile) { return tile < n_tiles; }));
     require(starts_of(map.cluster_start, n, n_clusters) && starts_of(graph.edge_start, n_clusters, graph.edges.size()));
-    require(std::ranges::all_of(graph.clusters, [n](const atlas::TexelCluster& c) { return c.slot < n; }));
-    require(std::ranges::all_of(graph.edges, [=](const atlas::ClusterEdge& e) { return e.to < n_clusters; }));
+    require(map.texel_size > 0 && std::isfinite(map.texel_size) && std::ranges::all_of(map.reach, is_length));
+    require(
+        std::ranges::all_of(map.boxes, [](const atlas::PackedBox& b) { return is_finite(b.lo) && is_length(b.step); }));
+    require(std::ranges::all_of(map.cluster_chart, [&](std::uint32_t chart) { return chart < atlas.n_charts; }));
+    for (std::size_t i = 0; i < n_clusters; ++i) require(is_cluster(graph.clusters[i], i, map, atlas));
+    require(std::ranges::all_of(graph.edges, [=](const atlas::ClusterEdge& e) {
+        return e.to < n_clusters && std::isfinite(e.hop_u) && std::isfinite(e.hop_v) && std::isfinite(e.c) &&
+               std::isfinite(e.s);
+    }));
+    map.tiles = entry.map<atlas::TexelTile>([&](std::span<const atlas::TexelTile> tiles, std::size_t first) {
+        require(first + tiles.size() <= n);
+        for (std::size_t k = 0; k < tiles.size(); ++k)
+            if (!is_tile(tiles[k], map.cluster_start[first + k + 1] - map.cluster_start[first + k])) return false;
+        return true;
+    });
+    map.packed = entry.map<atlas::PackedShape>([](auto, auto) { return true; });  // any number is a place in its box
+    require(map.tiles.size() == n && map.packed.size() == n);
     return stored;
 }
 

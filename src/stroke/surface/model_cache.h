@@ -40,8 +40,11 @@ struct StoredTexels {
     atlas::ClusterGraph clusters;
 };
 
-/// Reads what `put_texels` wrote; tiles stay in the file. Throws `Error` for an entry that is damaged: hashes, sizes,
-/// numbers of tiles and clusters are checked.
-StoredTexels get_texels(CacheReader& entry);
+/// Reads what `put_texels` wrote of a model with this atlas; tiles stay in the file. Throws `Error` for an entry that
+/// is damaged: hashes, sizes, indices and numbers are checked.
+StoredTexels get_texels(CacheReader& entry, const atlas::Atlas& atlas);
+
+/// Returns where texel maps are stored beside `models`: they are large and quickly made, and would drive models out.
+DiskCache texels_cache(const DiskCache& models);
 
 }  // namespace tuft::stroke
