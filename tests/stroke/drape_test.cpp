@@ -1,9 +1,12 @@
+#include "stroke/placement/drape.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
+#include "core/system/parallel.h"
 #include "grids.h"
 
 namespace tuft::stroke {
@@ -48,6 +51,35 @@ TriangleMesh rough_sphere() {
     for (std::size_t i = 0; i < m.positions.size(); ++i)
         m.positions[i] *= 1 + float(0.0004 / kSphereRadius * (2 * uniform(3, i) - 1));
     return m;
+}
+
+// Strokes of a drawing share the lines from its place; who asked before, and in how many threads, changes nothing.
+TEST(Drape, SharedLinesGiveTheBitsOfOnesOwn) {
+    const TriangleMesh ball = rough_sphere();
+    const auto query = std::make_shared<const SurfaceQuery>(ball);
+    const Placement front = upright_at({0, -kSphereRadius, 0}, {0, -1, 0}, SurfaceMapping::drape);
+    std::vector<StrokeSamples> traces;
+    for (std::uint64_t i = 0; i < 8; ++i) {
+        const Placement place =
+            i % 4 ? front : upright_at({0, 0.1 * double(i) * kSphereRadius, kSphereRadius}, {1, 0, 0}, front.mapping);
+        std::vector<Vec2> points = scattered(12, 0.02);
+        for (Vec2& p : points) p += Vec2(0.001 * double(i), 0);
+        traces.push_back(make_trace(place, points));
+    }
+    Drapes shared(query);
+    std::vector<SurfaceTrace> together(traces.size());
+    parallel_for(traces.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) together[i] = map_to_surface(*query, traces[i], &shared);
+    });
+    for (std::size_t i = 0; i < traces.size(); ++i) {
+        const SurfaceTrace alone = map_to_surface(*query, traces[i]);
+        for (std::size_t k = 0; k < alone.samples.size(); ++k) {
+            EXPECT_EQ(together[i].samples[k].position, alone.samples[k].position);
+            EXPECT_EQ(together[i].samples[k].normal, alone.samples[k].normal);
+            EXPECT_EQ(together[i].samples[k].right, alone.samples[k].right);
+        }
+    }
+    EXPECT_EQ(shared.of(front), shared.of(front));
 }
 
 TEST(Drape, OnAPlaneIsTheIdentity) {

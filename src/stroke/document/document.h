@@ -187,6 +187,7 @@ class Document {
     PaintTarget target(std::uint32_t layer, std::uint32_t mask);
     ink::Mix mix_of(const std::string& ink);
     brush::Preset preset_of(const std::string& brush, brush::SpineMethod spine) const;
+    HolderOptions holder_of(const PaintStroke& stroke);
     std::uint32_t stencil_mask_on(std::uint32_t layer, std::uint64_t before) const;
 
     void record(UndoRecord record);
@@ -200,6 +201,7 @@ class Document {
         std::unique_ptr<FlatTexels> flat_texels;  ///< of the last area
         std::unique_ptr<PlanScratchPool> plans;
         std::unique_ptr<TileReach> tile_reach;  ///< of the model, made for the first batch of strokes
+        std::shared_ptr<Drapes> drapes;         ///< of the visible surface
     };
     struct StrokeInWork {
         std::unique_ptr<StrokeSession> session;

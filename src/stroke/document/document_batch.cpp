@@ -132,7 +132,7 @@ bool Document::plan_stroke(BatchStroke& planned) {
     const PaintStroke& stroke = planned.stroke();
     const brush::Preset& preset = materials_.brush(stroke.brush);
     if (!stroke.erases() && materials_.ink(stroke.ink).yield > 0) return false;
-    planned.holder = materials_.holder(stroke.brush, *model_.mesh, stroke.settings.compensate_tip_lag);
+    planned.holder = holder_of(stroke);
     planned.preset = &preset;
     planned.spacing = pose_spacing(stroke, preset, stroke.erases() ? ink::Ink{} : materials_.ink(stroke.ink),
                                    model_.texels.texel_size);

@@ -11,6 +11,7 @@
 #include "stroke/gesture/hand.h"
 #include "stroke/gesture/resample.h"
 #include "stroke/journal/tables.h"
+#include "stroke/placement/drape.h"
 #include "stroke/session/session.h"
 
 /// Strokes: the brush is taken up, led over the model by a session, and put down.
@@ -168,9 +169,20 @@ StrokeReport Document::put_down(std::uint64_t id, const PaintStroke& stroke, Ses
 HandPath Document::path_of(const PaintStroke& stroke) {
     if (stroke.trace.samples.empty()) throw Error("a stroke without samples cannot be painted");
     if (!stroke.trace.flat) return {{}, spatial_poses(stroke.trace), 0};
-    const mesh::SurfaceQuery& query = stroke.layer == kPaletteLayer ? *palette_.model().query : surface();
-    return hand_path(query, steady(stroke.trace, stroke.settings),
-                     materials_.holder(stroke.brush, query.mesh(), stroke.settings.compensate_tip_lag));
+    const StrokeSamples steadied = steady(stroke.trace, stroke.settings);
+    if (stroke.layer != kPaletteLayer) return hand_path(surface(), steadied, holder_of(stroke));
+    const mesh::SurfaceQuery& plate = *palette_.model().query;
+    return hand_path(plate, steadied,
+                     materials_.holder(stroke.brush, plate.mesh(), stroke.settings.compensate_tip_lag));
+}
+
+// How the holder of a stroke of the model is led.
+HolderOptions Document::holder_of(const PaintStroke& stroke) {
+    HolderOptions holder = materials_.holder(stroke.brush, *model_.mesh, stroke.settings.compensate_tip_lag);
+    if (!scratch_.drapes || &scratch_.drapes->surface() != &surface())
+        scratch_.drapes = std::make_shared<Drapes>(parts_.surface());
+    holder.drapes = scratch_.drapes;
+    return holder;
 }
 
 // The path of a stroke of the model that is likely to be painted by itself, in work; null where it has none.
@@ -179,8 +191,7 @@ std::unique_ptr<PathAhead> Document::plan_path_ahead(const JournalEntry& entry) 
     if (entry.hidden || !stroke || !stroke->trace.flat || stroke->trace.samples.empty() || on_palette(entry))
         return nullptr;
     try {
-        return std::make_unique<PathAhead>(
-            *stroke, materials_.holder(stroke->brush, *model_.mesh, stroke->settings.compensate_tip_lag), surface());
+        return std::make_unique<PathAhead>(*stroke, holder_of(*stroke), surface());
     } catch (const Error&) {
         return nullptr;  // it is reported when its turn comes
     }

@@ -207,7 +207,7 @@ HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& trace, 
         const std::size_t own = std::clamp(i, path.set_down, led.samples.size() - 1) - path.set_down;
         ink.samples[i].position = trace.samples[own].position;
     }
-    path.mapped = map_to_surface(query, ink);
+    path.mapped = map_to_surface(query, ink, options.drapes.get());
     OtherSheets others;
     for (const SurfaceSample& s : path.mapped.samples)
         others.push_back(s.on_surface ? std::optional(s.position) : std::nullopt);

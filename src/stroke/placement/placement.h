@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,8 @@ struct SurfaceSample {
     Vec2 tip_lag{0};         ///< metres to the right and down, in the tangent plane, by which the hand leads the ink
 };
 
+class Drapes;
+
 /// A flat trace on the model.
 struct SurfaceTrace {
     std::vector<SurfaceSample> samples;  ///< one per sample of the trace, in order
@@ -54,9 +57,10 @@ struct SurfaceTrace {
 /// takes the stroke off all but one sheet (`leave_other_sheets`, projection.h).
 ///
 /// Past a border a geodesic continues straight in the last plane. A ray without a hit takes height and frame of the
-/// sample nearest in time that has one. Throws `Error` for a trace that is not flat, numbers that are not finite, and
-/// directions of the placement that are zero or parallel. Cost: about 0.1 µs per triangle crossed.
-SurfaceTrace map_to_surface(const mesh::SurfaceQuery& query, const StrokeSamples& trace);
+/// sample nearest in time that has one. `shared`, where given, has the lines of drapes (drape.h). Throws `Error` for a
+/// trace that is not flat, numbers that are not finite, and directions of the placement that are zero or parallel.
+/// Cost: about 0.1 µs per triangle crossed.
+SurfaceTrace map_to_surface(const mesh::SurfaceQuery& query, const StrokeSamples& trace, Drapes* shared = nullptr);
 
 /// Returns the radius of patches of `SurfaceMapping::drape`, metres: 8 mm, or 4 % of the box diagonal of a small model.
 double drape_radius(const mesh::TriangleMesh& mesh);
@@ -103,6 +107,7 @@ struct HolderOptions {
     double lean = 0;      ///< radians, `brush::Preset::lean`
     bool across = false;  ///< `bends_across`: lean and tip lag are across the broad side; false: along the path
     bool turned = false;  ///< `lags_by_turn`: the tip lag differs on the edge and across the broad side
+    std::shared_ptr<Drapes> drapes = {};  ///< lines that strokes of one placement share; empty: each walks its own
 };
 
 /// Returns the working depth of a brush, metres: half of the free hair.

@@ -212,13 +212,13 @@ StraightestGeodesic trace_geodesic(const TriangleMesh& mesh, const SurfacePoint&
     return out;
 }
 
-SurfaceTrace map_to_surface(const mesh::SurfaceQuery& query, const StrokeSamples& trace) {
+SurfaceTrace map_to_surface(const mesh::SurfaceQuery& query, const StrokeSamples& trace, Drapes* shared) {
     check(trace);
     switch (trace.placement.mapping) {
         case SurfaceMapping::project:
             return map_projected(query, trace);
         case SurfaceMapping::drape:
-            return map_draped(query, trace);
+            return map_draped(query, trace, shared);
         case SurfaceMapping::wrap:
             break;
     }

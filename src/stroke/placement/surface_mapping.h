@@ -30,8 +30,9 @@ std::optional<mesh::SurfacePoint> exact_ray(const mesh::SurfaceQuery& query, con
 /// Returns a surface sample with the time, pressure and tilt of a flat one.
 SurfaceSample hand_data(const StrokeSample& sample);
 
-/// `SurfaceMapping::drape` of `map_to_surface`. `over`, where given, becomes the samples' points on the smoothed
-/// surface, metres: they do not dip into grooves.
-SurfaceTrace map_draped(const mesh::SurfaceQuery& query, const StrokeSamples& trace, std::vector<Vec3>* over = nullptr);
+/// `SurfaceMapping::drape` of `map_to_surface`. `shared` is used where it is of this surface. `over`, where given,
+/// becomes the samples' points on the smoothed surface, metres: they do not dip into grooves.
+SurfaceTrace map_draped(const mesh::SurfaceQuery& query, const StrokeSamples& trace, Drapes* shared = nullptr,
+                        std::vector<Vec3>* over = nullptr);
 
 }  // namespace tuft::stroke

@@ -38,7 +38,7 @@ class SurfaceGrid {
         for (int j = 0; j < n_[1]; ++j)
             for (int i = 0; i < n_[0]; ++i) nodes.samples.push_back({.position = Vec3(low_ + step_ * Vec2(i, j), 0)});
         if (frame.placement.mapping == SurfaceMapping::drape) {
-            nodes_ = map_draped(surface, nodes, &over_).samples;
+            nodes_ = map_draped(surface, nodes, nullptr, &over_).samples;
         } else {
             nodes_ = map_to_surface(surface, nodes).samples;
             for (const SurfaceSample& s : nodes_) over_.push_back(s.position);
