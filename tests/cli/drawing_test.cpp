@@ -122,6 +122,48 @@ TEST_F(Drawing, EndsBeforeEdgesWhereItIsAsked) {
     EXPECT_EQ(again.out.find("replayed 1 area; atlas"), 0u) << again.out;
 }
 
+// A stripe over the edge of a box: its end lies on the wall, and no ink is lost on the way.
+TEST_F(Drawing, WrapsRoundAnEdgeWhereItIsAsked) {
+    std::string box;
+    for (const int z : {0, 60})
+        for (const int y : {-30, 30})
+            for (const int x : {-30, 30})
+                box += "v " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + "\n";
+    write("box.obj", box + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+    write("stripe.svg", "<svg width='40mm' viewBox='0 0 40 10'><rect width='40' height='10' fill='#c8402a'/></svg>");
+    const auto ink = [&](const std::string& more) {
+        const Ran ran = tuft("paint " + path("box.obj") + " --unit mm --atlas-size 512 --json --strokes " +
+                             path("stripe.svg") + " " + more);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        return double(json::parse(ran.out)["ink_mm3"]);
+    };
+    const double whole = ink("--place 0,0,60"), over = ink("--place 20,0,60 --mapping wrap --edges wrap");
+    EXPECT_NEAR(over / whole, 1, 0.02);  // texels of 0.4 mm along 100 mm of outline, less at the edge
+    EXPECT_NEAR(ink("--place 20,0,60 --edges cut") / whole, 0.75, 0.02);
+}
+
+TEST_F(Drawing, SnapsToTheMiddlePlaneOfTheModel) {
+    const json at = paint("--strokes " + path("a.svg") + " --place 7,20,0 --snap x")["placed"]["at_mm"];
+    EXPECT_NEAR(double(at[0]), 0, 1e-6);
+    EXPECT_NEAR(double(at[1]), 20, 1e-6);
+    EXPECT_NEAR(double(paint("--strokes " + path("a.svg") + " --place 7,20,0")["placed"]["at_mm"][0]), 7, 1e-6);
+}
+
+// The rim of a cylinder, from its wall; a place far from any edge is refused in a line that says how far.
+TEST_F(Drawing, ABandRunsAlongTheEdgeNearestToThePlace) {
+    write("tile.svg", "<svg width='10mm' viewBox='0 0 10 4'><rect width='10' height='4' fill='#c8402a'/></svg>");
+    const std::string on = "paint " + model("cylinder.ply") + " --atlas-size 512 --json --strokes " + path("tile.svg") +
+                           " --along edge --place ";
+    const Ran far = tuft(on + "0,-30,20");
+    EXPECT_EQ(far.status, 1);
+    EXPECT_NE(far.err.find("the nearest edge is "), std::string::npos) << far.err;
+    const Ran near = tuft(on + "0,-40,3");
+    ASSERT_EQ(near.status, 0) << near.err;
+    EXPECT_NE(near.err.find("the line is "), std::string::npos) << near.err;
+    const json placed = json::parse(near.out)["placed"];
+    EXPECT_NEAR(double(placed["normal"][2]), 0, 1e-3) << "on the wall, as its place";
+}
+
 TEST_F(Drawing, ABandHasAWholeNumberOfCopiesThatMeet) {
     // A band of one colour over its whole tile: where neighbours overlap or leave a gap, ink is lacking.
     write("tile.svg", "<svg width='30mm' viewBox='0 0 30 6'><rect width='30' height='6' fill='#c8402a'/></svg>");

@@ -64,5 +64,50 @@ TEST_F(Revision, StrokesFollowAModelThatWasMoved) {
     EXPECT_EQ(tuft("replay " + path("p.tuft") + " --follow none").status, 2);
 }
 
+// A stroke of a hand in space over a tile that is dented by 4 mm: pulled back it is pressed as deep as before.
+TEST_F(Revision, AStrokeInSpaceIsPulledBackOntoADent) {
+    const auto tile = [](double dent) {
+        std::string text;
+        for (int j = 0; j <= 12; ++j)
+            for (int i = 0; i <= 12; ++i) {
+                const double x = 5 * i - 30, y = 5 * j - 30;
+                text += "v " + std::to_string(x) + " " + std::to_string(y) + " " +
+                        std::to_string(1e-3 * x * x - dent * std::exp(-(x * x + y * y) / 50)) + "\n";
+            }
+        for (int j = 0; j < 12; ++j)
+            for (int i = 1; i <= 12; ++i) {
+                const int a = 13 * j + i;
+                text += "f " + std::to_string(a) + " " + std::to_string(a + 1) + " " + std::to_string(a + 14) + " " +
+                        std::to_string(a + 13) + "\n";
+            }
+        return text;
+    };
+    write("tile.obj", tile(0));
+    write("dent.obj", tile(4));
+    std::string trace;
+    for (int i = 0; i <= 20; ++i) trace += (i ? ", " : "") + std::to_string(0.5 * i - 5) + " 0 16";
+    write("space.inkml",
+          "<ink xmlns=\"http://www.w3.org/2003/InkML\"><definitions><traceFormat xml:id=\"f\">"
+          "<channel name=\"X\" units=\"mm\"/><channel name=\"Y\" units=\"mm\"/><channel name=\"Z\" "
+          "units=\"mm\"/></traceFormat><context xml:id=\"c\" traceFormatRef=\"#f\"/></definitions>"
+          "<trace contextRef=\"#c\">" +
+              trace + "</trace></ink>");
+    ASSERT_EQ(tuft("paint " + path("tile.obj") + " --unit mm --brush wolf-small --strokes " + path("space.inkml") +
+                   " --atlas-size 256 --project " + path("p.tuft"))
+                  .status,
+              0);
+    const std::string revise = "replay " + path("p.tuft") + " --model " + path("dent.obj") + " --json";
+    const auto fit = [&](const std::string& more) {
+        const Ran ran = tuft(revise + more);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        return json::parse(ran.out)["fit"];
+    };
+    const json left = fit(""), pulled = fit(" --pull-back");
+    EXPECT_EQ(left["misfits"], 1);
+    EXPECT_LT(left["strokes"][0]["deeper_mm"].get<double>(), -2) << "in the dent it hardly touches";
+    EXPECT_EQ(pulled["misfits"], 0);
+    EXPECT_NEAR(pulled["strokes"][0]["deeper_mm"].get<double>(), 0, 0.01);
+}
+
 }  // namespace
 }  // namespace tuft::test

@@ -43,10 +43,12 @@ void add_area_options(CLI::App& command, Paint& paint) {
 
 void add_copy_options(CLI::App& command, Paint& paint) {
     command
-        .add_option("--along", paint.copies.along,
-                    "repeats the drawing along a path on the model, such as an ornament round a bowl: rim, level "
-                    "round the model at the height of --place; edge, along the sharp edge, shut line or border next "
-                    "to --place; or a stroke file whose first line is the path")
+        .add_option(
+            "--along", paint.copies.along,
+            "repeats the drawing along a path on the model, such as an ornament round a bowl: rim, level "
+            "round the model at the height of --place; edge, along the border, edge, shut line, border of groups "
+            "or rounded crease nearest to --place, at most 50 mm and a tenth of the model away, on the side of "
+            "--place; or a stroke file whose first line is the path")
         ->excludes("--on")
         ->type_name("rim|edge|FILE");
     command

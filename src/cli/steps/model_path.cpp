@@ -12,6 +12,7 @@
 #include "stroke/drawing/bend.h"
 #include "stroke/drawing/drawing.h"
 #include "stroke/placement/placement.h"
+#include "writer/layout/feature_line.h"
 
 namespace tuft::cli {
 namespace {
@@ -19,7 +20,23 @@ namespace {
 constexpr double kRimHeight = 0.62;  // of the model's height, where no place is named
 constexpr double kMeets = 0.01;      // of a line's length, between ends that meet
 constexpr int kMostRepeats = 1000;
+constexpr double kEdgeReach = 0.05, kEdgeReachOfModel = 0.1;  // metres; of the model's diagonal: the less of both
 constexpr double kReach = 0.25;  // of a step, to either side, over which the path's direction is taken
+
+std::string name_of(const writer::FeatureLine& line) {
+    const double degrees = line.angle / kDegree;
+    switch (line.kind) {
+        case writer::LineKind::border:
+            return "a border of the surface";
+        case writer::LineKind::sharp_edge:
+            return fmt::format("an edge of {:.0f} degrees", degrees);
+        case writer::LineKind::group_border:
+            return "a border between groups";
+        case writer::LineKind::crease:
+            break;
+    }
+    return fmt::format("a crease of {:.0f} degrees within {:.0f} mm", degrees, line.over / kMillimetre);
+}
 
 /// How a drawing is repeated.
 struct Band {
@@ -87,9 +104,14 @@ PathOnModel rim_path(const stroke::Model& model, const Paint& a) {
     return {writer::level_section(*model.query, through), 0};
 }
 
-PathOnModel edge_path(const stroke::Model& model, const Paint& a) {
+PathOnModel edge_path(const stroke::Model& model, const Paint& a, Console& console) {
     if (a.place.at_mm.empty()) throw UsageError("--along edge needs a point near the edge (see --place)");
-    return {writer::feature_line(*model.query, kMillimetre * vector_of(a.place.at_mm)), 0};
+    const double reach = std::min(kEdgeReach, kEdgeReachOfModel * model.mesh->bounds.diagonal());
+    writer::FeatureLine line = writer::feature_line(*model.query, kMillimetre * vector_of(a.place.at_mm), reach);
+    console.note(fmt::format("the line is {}, {:.3g} mm from the place, {:.4g} mm long{}", name_of(line),
+                             line.away / kMillimetre, line.path.length() / kMillimetre,
+                             line.path.closed ? ", closed" : ""));
+    return {std::move(line.path), 0};
 }
 
 PathOnModel curve_path(const stroke::Model& model, const Paint& a, const std::filesystem::path& file,
@@ -138,7 +160,7 @@ PlacedDrawing place_along(std::vector<stroke::JournalEntry>& strokes, const stro
     for (const stroke::FlatArea* area : areas) stroke::add_extent(extent, *area);
     if (drawing.empty() && areas.empty()) throw UsageError("--along repeats a flat drawing without a place of its own");
     const PathOnModel on = a.copies.along == "rim"    ? rim_path(model, a)
-                           : a.copies.along == "edge" ? edge_path(model, a)
+                           : a.copies.along == "edge" ? edge_path(model, a, console)
                                                       : curve_path(model, a, a.copies.along, console);
     const double length = on.path.length(), width = stroke::width_of(extent);
     if (!(length > 0) || !(width > 0)) throw UsageError("--along needs a path and a drawing with a length");

@@ -21,8 +21,9 @@ struct PathOnModel {
 /// Returns the level section of the model at `--place`, else in front of it at 0.62 of its height (a rim).
 PathOnModel rim_path(const stroke::Model& model, const Paint& arguments);
 
-/// Returns the sharp edge or border nearest to `--place` (`writer::feature_line`).
-PathOnModel edge_path(const stroke::Model& model, const Paint& arguments);
+/// Returns the border, edge or crease nearest to `--place`, at most 50 mm and a tenth of the model's diagonal away
+/// (`writer::feature_line`), and notes which.
+PathOnModel edge_path(const stroke::Model& model, const Paint& arguments, Console& console);
 
 /// Returns the first flat line of a stroke file, placed as the arguments say. A line whose ends meet is closed. Throws
 /// `Error` where it has none.

@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <unordered_map>
 
 #include "core/error.h"
 #include "core/text/units.h"
-#include "stroke/surface/sharp_edges.h"
 
 namespace tuft::writer {
 namespace {
@@ -315,103 +313,6 @@ ModelPath level_section(const mesh::SurfaceQuery& query, const Vec3& through) {
             std::rotate(path.points.begin(), path.points.end() - 1, path.points.end());
             std::rotate(path.normals.begin(), path.normals.end() - 1, path.normals.end());
         }
-    }
-    return path;
-}
-
-namespace {
-
-constexpr double kSharpEdge = 0.5236;  // radians, 30°
-constexpr double kLeastOn = 0.5;       // cosine of the turn from edge to edge
-
-/// Sharp edges by their ends.
-class EdgeWalk {
-  public:
-    EdgeWalk(const mesh::TriangleMesh& mesh, std::vector<stroke::SharpEdge> edges)
-        : mesh_(mesh), edges_(std::move(edges)), used_(edges_.size(), 0) {
-        for (std::size_t e = 0; e < edges_.size(); ++e)
-            for (const std::uint32_t v : edges_[e]) at_.emplace(v, e);
-    }
-
-    std::size_t nearest(const Vec3& p) const {
-        std::size_t best = 0;
-        double least2 = HUGE_VAL;
-        for (std::size_t e = 0; e < edges_.size(); ++e) {
-            const Vec3 a = point(edges_[e][0]), d = point(edges_[e][1]) - a;
-            const double t = std::clamp(glm::dot(p - a, d) / std::max(glm::dot(d, d), 1e-300), 0.0, 1.0);
-            const Vec3 off = p - a - t * d;
-            if (const double d2 = glm::dot(off, off); d2 < least2) least2 = d2, best = e;
-        }
-        return best;
-    }
-
-    /// Vertices from `from` over `to` on; ends with `from` where the line is closed.
-    std::vector<std::uint32_t> follow(std::uint32_t from, std::uint32_t to) {
-        std::vector<std::uint32_t> line{from, to};
-        while (line.back() != from) {
-            const std::uint32_t v = line.back();
-            const Vec3 along = glm::normalize(point(v) - point(line[line.size() - 2]));
-            double most = kLeastOn;
-            std::size_t next = edges_.size();
-            const auto [first, last] = at_.equal_range(v);
-            for (auto at = first; at != last; ++at) {
-                const Vec3 on = point(other(at->second, v)) - point(v);
-                if (used_[at->second] || !(glm::length(on) > 0)) continue;
-                const double turn = glm::dot(along, glm::normalize(on));
-                if (turn > most || (turn == most && at->second < next)) most = turn, next = at->second;
-            }
-            if (next == edges_.size()) break;
-            used_[next] = 1;
-            line.push_back(other(next, v));
-        }
-        return line;
-    }
-
-    void use(std::size_t e) { used_[e] = 1; }
-    const stroke::SharpEdge& edge(std::size_t e) const { return edges_[e]; }
-
-  private:
-    Vec3 point(std::uint32_t v) const { return Vec3(mesh_.positions[v]); }
-    std::uint32_t other(std::size_t e, std::uint32_t v) const {
-        return edges_[e][0] == v ? edges_[e][1] : edges_[e][0];
-    }
-
-    const mesh::TriangleMesh& mesh_;
-    std::vector<stroke::SharpEdge> edges_;
-    std::vector<char> used_;
-    std::multimap<std::uint32_t, std::size_t> at_;
-};
-
-}  // namespace
-
-ModelPath feature_line(const mesh::SurfaceQuery& query, const Vec3& through) {
-    const mesh::TriangleMesh& mesh = query.mesh();
-    std::vector<stroke::SharpEdge> edges = stroke::sharp_edges(mesh, kSharpEdge);
-    if (edges.empty()) throw Error(Message("the model has no sharp edge and no border"));
-    EdgeWalk walk(mesh, std::move(edges));
-    const std::size_t first = walk.nearest(through);
-    walk.use(first);
-    const auto [a, b] = walk.edge(first);
-    std::vector<std::uint32_t> line = walk.follow(a, b);
-    ModelPath path;
-    path.closed = line.front() == line.back();
-    if (path.closed) {
-        line.pop_back();
-    } else {
-        std::vector<std::uint32_t> back = walk.follow(b, a);
-        line.insert(line.begin(), back.rbegin(), back.rend() - 2);
-    }
-    for (const std::uint32_t v : line) {
-        path.points.emplace_back(mesh.positions[v]);
-        const auto on = query.closest_point(path.points.back());
-        path.normals.push_back(on ? on->normal : Vec3(0, 0, 1));
-    }
-    double to_right = 0;
-    for (std::size_t i = 0; i + 1 < path.points.size(); ++i)
-        to_right += glm::dot(path.points[i + 1] - path.points[i], glm::cross(Vec3(0, 0, 1), path.normals[i]));
-    if (to_right < 0) {
-        std::reverse(path.points.begin(), path.points.end());
-        std::reverse(path.normals.begin(), path.normals.end());
     }
     return path;
 }

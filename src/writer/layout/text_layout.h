@@ -89,10 +89,4 @@ std::vector<double> place_along(const ModelPath& path, const std::vector<Glyph>&
 /// Cost: one pass over the triangles.
 ModelPath level_section(const mesh::SurfaceQuery& query, const Vec3& through);
 
-/// Returns the line of sharp edges and borders (`stroke::sharp_edges`, 30°) through the one nearest to `through`, such
-/// as a crease, the edge of a shut line or the lip of a bowl: from edge to edge with the least turn, up to where every
-/// next one turns by more than 60°. A reader outside sees it run to the right, if it does not stand upright. Throws
-/// `Error` for a mesh without such edges. Cost: one pass over the triangles.
-ModelPath feature_line(const mesh::SurfaceQuery& query, const Vec3& through);
-
 }  // namespace tuft::writer
