@@ -102,6 +102,40 @@ TEST(SvgAreas, ShapesComeBackToFrontWithTheStrokeOverTheFill) {
     EXPECT_EQ(areas[0].low, areas[2].low) << "all in the frame of the drawing";
 }
 
+TEST(SvgAreas, PaintOrderPutsTheFillOverTheStroke) {
+    const auto first = [](const std::string& order) {
+        return read("<g style='paint-order:" + order + "'><rect width='9' height='9' fill='red' stroke='blue'/></g>")
+            .areas.at(0)
+            .stops[0]
+            .ink;
+    };
+    for (const char* order : {"stroke", "stroke fill", "markers stroke"}) EXPECT_EQ(first(order), "#0000ff") << order;
+    for (const char* order : {"normal", "fill", "fill stroke", "markers"}) EXPECT_EQ(first(order), "#ff0000") << order;
+}
+
+// SVG 1.1, 14.5: a group is drawn opaque, then the whole is made translucent. Areas of this test are exact but for the
+// cells on their edges.
+TEST(SvgAreas, ATranslucentGroupIsOneFilm) {
+    const std::string shapes =
+        "<rect width='20' height='20' fill='red'/><rect x='10' y='10' width='20' height='20' fill='blue'/>";
+    const auto group = read("<g opacity='.5'>" + shapes + "</g>");
+    ASSERT_EQ(group.areas.size(), 2u);
+    EXPECT_NEAR(covered(group.areas[0], 0.1), 300, 3);
+    EXPECT_NEAR(covered(group.areas[1], 0.1), 400, 3);
+    EXPECT_EQ(group.areas[0].stops[0].opacity, 0.5);
+    EXPECT_TRUE(group.notes.empty());
+    EXPECT_NEAR(covered(read(shapes).areas.at(0), 0.1), 400, 3);
+    // Half of the line lies over the fill of its own shape, and hides it.
+    const auto line = read("<rect width='20' height='20' fill='red' stroke='blue' stroke-width='2' opacity='.5'/>");
+    EXPECT_NEAR(covered(line.areas.at(0), 0.1), 18 * 18, 3);
+    // What is translucent within the group lets the other through, and that is said.
+    const auto film = read("<g opacity='.5'>" + shapes + "<rect width='30' height='5' fill-opacity='.5'/></g>");
+    EXPECT_NEAR(covered(film.areas.at(0), 0.1), 300, 3);
+    EXPECT_EQ(film.notes.size(), 1u);
+    // What is hidden wholly is not painted.
+    EXPECT_EQ(read("<g opacity='.5'><circle cx='9' cy='9' r='2' fill='red'/>" + shapes + "</g>").areas.size(), 2u);
+}
+
 TEST(SvgAreas, SelectorsAndSpecificity) {
     const auto ink = [](const std::string& sheet) {
         return read("<style>rect{fill:#400000}" + sheet +

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <span>
 
 #include "core/error.h"
 #include "core/system/interrupt.h"
@@ -20,6 +21,8 @@ constexpr double kStopStep = 8;                  // ΔE2000 between stops
 constexpr int kMostBetween = 16;                 // stops between two of the file
 constexpr std::size_t kMostMaskPieces = 20'000;  // of masked areas
 constexpr double kSeen = 1.0 / 512;              // opacity
+constexpr std::size_t kMostCuts = 20'000;        // of shapes in translucent groups by others
+constexpr double kLeastOverlap = 1e-6;           // of an area
 
 ink::Lab lab_of(const SvgColour& c) {
     std::array<double, 3> linear{};
@@ -98,6 +101,7 @@ std::vector<PaintedPart> parts_of(const SvgShape& s, double unit, double toleran
         s.style.stroke, s.stroke_gradient, s.style.stroke_opacity,
         [&] { return svg_stroke_outline(s, unit, tolerance); }, FillRule::nonzero,
         [&] { return moved(s.lines, s.matrix); });
+    if (s.style.stroke_first) std::ranges::reverse(parts);
     return parts;
 }
 
@@ -136,6 +140,7 @@ class AreaMaker {
                 if (!part.gradient) inks_.of(part.colour);  // the drawing's own colours before those between stops
         }
         drop_background(all);
+        cut_films(all);
         for (const std::vector<PaintedPart>& parts : all)
             for (const PaintedPart& part : parts) add(part);
         frame();
@@ -150,6 +155,57 @@ class AreaMaker {
             first->erase(first->begin());
             scene_.losses.add(SvgLoss::white);
         }
+    }
+    // A translucent group is one film: its shapes hide each other as if they were opaque.
+    void cut_films(std::vector<std::vector<PaintedPart>>& all) {
+        std::map<std::size_t, std::vector<PaintedPart*>> films;
+        for (std::vector<PaintedPart>& parts : all)
+            for (PaintedPart& part : parts)
+                if (part.shape->film > 0) films[part.shape->film].push_back(&part);
+        for (auto& [number, parts] : films)
+            for (std::size_t i = 0; i + 1 < parts.size(); ++i) cut_by(*parts[i], std::span(parts).subspan(i + 1));
+        for (std::vector<PaintedPart>& parts : all) std::erase_if(parts, [](const auto& p) { return p.rings.empty(); });
+    }
+    void cut_by(PaintedPart& part, std::span<PaintedPart* const> over) {
+        const Extent own = extent_of(part);
+        std::optional<Shape> left;
+        bool shows = false;
+        for (const PaintedPart* other : over) {
+            check_interrupt();
+            const Extent e = extent_of(*other);
+            if (e.low.x >= own.high.x || e.high.x <= own.low.x || e.low.y >= own.high.y || e.high.y <= own.low.y)
+                continue;
+            const bool solid = !other->gradient && !other->picture && other->shape->masks.empty() &&
+                               other->opacity > (1 - kSeen) * other->shape->film_opacity;
+            if (n_points_of(part) + n_points_of(*other) > Shape::kMostPoints || ++n_cuts_ > kMostCuts)
+                return scene_.losses.add(SvgLoss::overlap);
+            Shape cover(other->rings, other->rule);
+            for (const std::size_t k : other->shape->clips) cover = cover.intersected(scene_.clips[k]);
+            const Shape before = left ? *left : Shape(part.rings, part.rule);
+            Shape after = before.without(cover);
+            if (!(before.area() - after.area() > kLeastOverlap * before.area())) continue;
+            shows |= !solid;
+            if (solid) left = std::move(after);
+        }
+        if (shows) scene_.losses.add(SvgLoss::overlap);
+        if (!left) return;
+        part.rings = left->rings();
+        part.rule = FillRule::nonzero;
+        part.lines.clear();
+    }
+    struct Extent {
+        Vec2 low{HUGE_VAL}, high{-HUGE_VAL};
+    };
+    static Extent extent_of(const PaintedPart& part) {
+        Extent e;
+        for (const Ring& ring : part.rings)
+            for (const Vec2& p : ring) e = {glm::min(e.low, p), glm::max(e.high, p)};
+        return e;
+    }
+    static std::size_t n_points_of(const PaintedPart& part) {
+        std::size_t n = 0;
+        for (const Ring& ring : part.rings) n += ring.size();
+        return n;
     }
     static std::vector<PaintedPart>* first_painted(std::vector<std::vector<PaintedPart>>& all) {
         for (std::vector<PaintedPart>& parts : all)
@@ -366,7 +422,7 @@ class AreaMaker {
     Shape page_;
     Inks inks_;
     std::vector<stroke::RecordedStroke> out_;
-    std::size_t n_points_ = 0, n_pieces_ = 0;
+    std::size_t n_points_ = 0, n_pieces_ = 0, n_cuts_ = 0;
 };
 
 }  // namespace

@@ -54,6 +54,9 @@ Message loss_text(SvgLoss loss, std::size_t n) {
         case SvgLoss::opacity:
             return say("1 opacity is not applied: the ink is painted in full",
                        "{} opacities are not applied: the ink is painted in full");
+        case SvgLoss::overlap:
+            return say("1 shape shows through another of its translucent group, which would hide it",
+                       "{} shapes show through others of their translucent groups, which would hide them");
         case SvgLoss::blend:
             return say("1 blend mode is not applied", "{} blend modes are not applied");
         case SvgLoss::white:

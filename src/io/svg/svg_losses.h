@@ -30,6 +30,7 @@ enum class SvgLoss {
     pattern,
     marker,
     opacity,
+    overlap,
     blend,
     white,
     frame,

@@ -29,7 +29,8 @@ constexpr std::size_t kMostMarkers = 100'000;            // of one line
 struct State {
     SvgMatrix matrix{1};
     SvgStyle style;
-    double opacity = 1;
+    double opacity = 1, film_opacity = 1;
+    std::size_t film = 0;
     std::vector<std::size_t> clips, masks;
     std::string group, upright;
     Vec2 page{0};  ///< size of the viewport, user units
@@ -84,6 +85,7 @@ class SceneReader {
         if (name == "image" && options_.brush) return scene_.losses.add(SvgLoss::image);
         count_effects(own);
         state.opacity *= svg_part(own("opacity"), 1);
+        if (state.film == 0 && state.opacity < 1) state.film = ++n_films_, state.film_opacity = state.opacity;
         name_group(node, name, own, state, depth);
         const bool inner = name == "svg" && depth > 0;
         if (inner && options_.brush && (node.attribute("x") || node.attribute("y") || node.attribute("viewBox")))
@@ -418,6 +420,8 @@ class SceneReader {
                 .matrix = state.matrix,
                 .style = state.style,
                 .opacity = state.opacity,
+                .film = state.film,
+                .film_opacity = state.film_opacity,
                 .clips = state.clips,
                 .masks = state.masks,
                 .group = state.group,
@@ -473,14 +477,10 @@ class SceneReader {
         const auto& [corner, tile, own, from, to] = *grid;
         const pugi::xml_node content = *filled;
         const Vec2 size = bounds.second - bounds.first;
-        State inside{.matrix = state.matrix * own,
-                     .style = style_round(content),
-                     .opacity = shape.opacity * shape.style.fill_opacity,
-                     .clips = state.clips,
-                     .masks = state.masks,
-                     .group = state.group,
-                     .upright = state.upright,
-                     .page = state.page};
+        State inside = state;
+        inside.matrix = state.matrix * own;
+        inside.style = style_round(content);
+        inside.opacity = shape.opacity * shape.style.fill_opacity;
         State outer = state;
         add_clip(outer, shape.lines, shape.style.rule);
         inside.clips.push_back(outer.clips.back());
@@ -521,14 +521,9 @@ class SceneReader {
         if (id.empty() || found == by_id_.end() || local_name(found->second) != "marker") return;
         if (depth > kDeepest) throw Error(source_, "markers refer to each other");
         const pugi::xml_node& node = found->second;
-        State inside{.matrix = state.matrix * svg_translation(at.first.x, at.first.y),
-                     .style = style_round(node),
-                     .opacity = state.opacity,
-                     .clips = state.clips,
-                     .masks = state.masks,
-                     .group = state.group,
-                     .upright = state.upright,
-                     .page = state.page};
+        State inside = state;
+        inside.matrix = state.matrix * svg_translation(at.first.x, at.first.y);
+        inside.style = style_round(node);
         const Properties own(node, sheet_.declared(node));
         inherit_style(inside.style, std::cref(own), by_id_, source_);
         const std::string orient = node.attribute("orient").value();
@@ -588,7 +583,7 @@ class SceneReader {
     SvgIds by_id_;
     SvgFonts fonts_;
     SvgPictures pictures_;
-    std::size_t n_elements_ = 0, n_points_ = 0, n_text_ = 0, n_matches_ = 0, n_upright_ = 0;
+    std::size_t n_elements_ = 0, n_points_ = 0, n_text_ = 0, n_matches_ = 0, n_upright_ = 0, n_films_ = 0;
 };
 
 }  // namespace

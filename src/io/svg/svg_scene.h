@@ -37,6 +37,8 @@ struct SvgShape {
     SvgMatrix matrix{1};         ///< user units to metres
     SvgStyle style;
     double opacity = 1;                     ///< of the shape and of all groups round it
+    std::size_t film = 0;                   ///< number of the outermost translucent group or shape; 0: none
+    double film_opacity = 1;                ///< of that group and what is round it
     bool fixed_width = false;               ///< its stroke does not grow with transforms
     std::vector<std::size_t> clips, masks;  ///< indices into the scene: all of them apply
     SvgGradientPtr fill_gradient, stroke_gradient;

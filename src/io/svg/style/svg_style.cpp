@@ -95,6 +95,10 @@ void inherit_style(SvgStyle& style, const SvgProperty& own, const SvgIds& ids, c
         if (const std::string value = own(name); !value.empty()) *to = svg_reference(value);
     style.fill_opacity = svg_part(own("fill-opacity"), style.fill_opacity);
     style.stroke_opacity = svg_part(own("stroke-opacity"), style.stroke_opacity);
+    if (const std::string order = own("paint-order"); !order.empty()) {
+        const std::size_t stroke = order.find("stroke");
+        style.stroke_first = stroke != std::string::npos && stroke < order.find("fill");
+    }
     if (states_font(own)) {
         SvgFont font = style.font ? *style.font : SvgFont{};
         inherit_font(font, own);

@@ -54,6 +54,7 @@ struct SvgStyle {
     SvgPen pen;
     std::string marker_start, marker_mid, marker_end;  ///< ids; empty: none
     double fill_opacity = 1, stroke_opacity = 1;
+    bool stroke_first = false;  ///< `paint-order`: the fill lies over the stroke
     bool visible = true;
     std::shared_ptr<const SvgFont> font;  ///< of text; null: the initial one
 
