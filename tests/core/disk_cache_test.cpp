@@ -122,8 +122,14 @@ TEST_F(DiskCacheTest, AMappedArrayOutlivesItsEntryAndIsCheckedWhole) {
     const auto get = [&](SharedArray<int>& mapped) {
         return cache.read(key(1), [&](CacheReader& entry) {
             EXPECT_EQ(entry.get_text(), "before");
-            mapped = entry.map<int>();
-            EXPECT_TRUE(entry.map<int>().empty());
+            std::size_t seen = 0;
+            mapped = entry.map<int>([&](std::span<const int> some, std::size_t first) {
+                EXPECT_EQ(first, seen);
+                seen += some.size();
+                return some.back() > 0;
+            });
+            EXPECT_EQ(seen, mapped.size());
+            EXPECT_TRUE(entry.map<int>([](auto, auto) { return true; }).empty());
             EXPECT_EQ(entry.get_text(), "after");
         });
     };
