@@ -42,7 +42,7 @@ stroke/journal/entry
 stroke/journal
 stroke/gesture
 stroke/placement
-stroke/drawing stroke/surface
+stroke/drawing stroke/surface stroke/pointer
 stroke/contact
 stroke/deposit
 stroke/session

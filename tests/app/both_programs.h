@@ -33,6 +33,17 @@ class BothPrograms : public ::testing::Test {
 
     /// `before`: commands that come first.
     Painted by_studio(const std::string& name, const MakeCommand& make, std::vector<Command> before = {}) {
+        return in_studio(name, [&](std::unique_ptr<PaintThread>& painter) {
+            auto [command, words] = make(painter->surface());
+            for (Command& first : before) painter->post(std::move(first));
+            painter->post(std::move(command));
+            return words;
+        });
+    }
+
+    /// `work_on` posts commands to the paint thread and returns the options that say the same.
+    Painted in_studio(const std::string& name,
+                      const std::function<std::string(std::unique_ptr<PaintThread>&)>& work_on) {
         const std::string project = folder_ + "/studio.tuft";
         std::filesystem::remove(project);
         PaintWork work;
@@ -41,13 +52,10 @@ class BothPrograms : public ::testing::Test {
         work.texture = std::make_unique<Texture>(*work.document, ProgressFn{});
         work.source = source_folder() + "/models/" + name;
         EXPECT_TRUE(work.autosave.start(project, work.source, {}, *work.document).empty());
-        auto [command, words] = make(*work.model->query);
-        {
-            PaintThread painter(std::move(work));
-            for (Command& first : before) painter.post(std::move(first));
-            painter.post(std::move(command));
-            painter.wait_idle(600);
-        }
+        auto painter = std::make_unique<PaintThread>(std::move(work));
+        const std::string words = work_on(painter);
+        painter->wait_idle(600);
+        painter.reset();
         return {test::stored_hash(project), words, io::Project::open(project).strokes()};
     }
 

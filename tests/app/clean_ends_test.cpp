@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <functional>
 
-#include "app/input/pointer_input.h"
+#include "app/input/pointer.h"
 #include "models.h"
 #include "paths.h"
 #include "stroke/placement/surface_mapping.h"

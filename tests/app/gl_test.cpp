@@ -70,7 +70,7 @@ TEST_F(Gl, ShadersAgreeWithTheirTwinOnTheProcessor) {
                     scene.draw_model(c, light, {.roughness = roughness});
                     for (const auto& [x, y] : {std::pair{120, 90}, std::pair{95, 75}}) {
                         const std::vector<std::uint8_t> pixel = render::read_pixels(x, kHeight - 1 - y, 1, 1);
-                        const render::GlRay ray = render::ray_at(c, x + 0.5, y + 0.5);
+                        const Ray ray = render::ray_at(c, x + 0.5, y + 0.5);
                         const auto want =
                             encoded(render::glazed(light, base, normal, Vec3f(-ray.direction), roughness));
                         // One step of eight bits for rounding, one for the GPU's single precision and its texture

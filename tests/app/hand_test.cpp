@@ -1,9 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "app/input/pointer_input.h"
+#include "app/input/pointer.h"
 #include "app/tools/tip_lag_cache.h"
 #include "app/view/viewport.h"
 #include "models.h"
@@ -121,6 +122,27 @@ TEST_F(PointerOnSheet, OnAStringTheBrushStaysBehindByItsLength) {
         for (const StrokeStep& step : hand.move(above(-0.04 + 0.0004 * i, 0, 0.004 * i)))
             if (!step.poses.empty()) last = step.poses.back().position;
     EXPECT_NEAR(last.x, mesh_->bounds.centre().x + 0.04 - 0.010, 1e-4);
+}
+
+// The pressure of the pen stays at its place: half way along the string the brush is pressed as the pen was there.
+TEST_F(PointerOnSheet, OnAStringAPensStrokeEndsWhereThePenLeaves) {
+    PointerSettings s;
+    s.string = 0.010;
+    s.smoothing = 1e-4;
+    PointerInput hand(*query_, preset_, s);
+    std::vector<brush::Pose> poses;
+    const auto take = [&](const std::vector<StrokeStep>& steps) {
+        for (const StrokeStep& step : steps) poses.insert(poses.end(), step.poses.begin(), step.poses.end());
+    };
+    for (int i = 0; i <= 200; ++i) take(hand.move(above(-0.04 + 0.0004 * i, 0, 0.004 * i, 0.2 + 0.002 * i)));
+    take(hand.lift());
+    const double middle = mesh_->bounds.centre().x;
+    EXPECT_NEAR(poses.back().position.x, middle + 0.04, 1e-4);
+    const auto at = std::ranges::find_if(poses, [&](const brush::Pose& p) { return p.position.x > middle + 0.035; });
+    ASSERT_NE(at, poses.end());
+    const double depth = preset_.length - (at->position.z - mesh_->bounds.hi.z);
+    // Pressure 0.575 at 35 mm. The tip comes there at 0.1 m/s, and the brush follows in 4 ms: 0.4 mm, or 0.002.
+    EXPECT_NEAR(depth / stroke::working_depth(preset_), 0.575, 0.004);
 }
 
 TEST_F(PointerOnSheet, LeavingTheModelLiftsAndComingBackBegins) {
@@ -302,10 +324,10 @@ TEST_F(PointerOnSheet, AWideFerruleFollowsItsStrokeByTheClosedForm) {
 TEST_F(PointerOnSheet, TheTipLagFollowsATurnOfTheStrokeAsInATrace) {
     const brush::Preset flat = brush::load_preset("flat-12");
     std::vector<double> turns;
-    const TipLag recorded{.upright = {{0, 0}, {0.02, 0}}, .tilted = [&](double, const Vec2&, double turn) {
-                              turns.push_back(turn);
-                              return Vec2{0};
-                          }};
+    const BrushTipLag recorded{.upright = {{0, 0}, {0.02, 0}}, .tilted = [&](double, const Vec2&, double turn) {
+                                   turns.push_back(turn);
+                                   return Vec2{0};
+                               }};
     PointerInput hand(*query_, flat, {.smoothing = 1e-6}, recorded);
     // To the right on its edge, then up across its broad side, at 0.05 m/s.
     constexpr double kCorner = 0.03;
@@ -470,7 +492,7 @@ TEST(Orbit, RayAndPicturePointAreInverse) {
         o.roll = 0.3;
         const render::GlCamera c = o.camera(640, 480, Box{Vec3(-0.1), Vec3(0.1)});
         for (const Vec2 at : {Vec2(10, 20), Vec2(320, 240), Vec2(600, 33)}) {
-            const render::GlRay ray = render::ray_at(c, at.x, at.y);
+            const Ray ray = render::ray_at(c, at.x, at.y);
             const Vec3 back = render::picture_point(c, ray.origin + 0.37 * ray.direction);
             EXPECT_NEAR(back.x, at.x, 1e-7);
             EXPECT_NEAR(back.y, at.y, 1e-7);

@@ -3,7 +3,7 @@
 
 #include "app/input/imgui_feed.h"
 #include "app/input/pen_samples.h"
-#include "app/input/pointer_input.h"
+#include "app/input/pointer.h"
 #include "core/text/units.h"
 #include "models.h"
 #include "paths.h"

@@ -6,7 +6,7 @@
 #include "app/document/curve.h"
 #include "app/document/lettering.h"
 #include "app/document/writing.h"
-#include "app/input/pointer_input.h"
+#include "app/input/pointer.h"
 #include "stroke/gesture/symmetry.h"
 #include "stroke/journal/entry/fill.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/input/events.h"
-#include "app/input/pointer_input.h"
+#include "app/input/pointer.h"
 #include "app/session/session.h"
 
 /// \file

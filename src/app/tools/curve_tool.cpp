@@ -136,7 +136,7 @@ void CurveTool::paint(double now) {
     CurveInWork& curve = s.tools.curve;
     if (curve.points.size() < 2) return;
     const brush::Preset preset = brush::load_preset(s.brush.preset);
-    const TipLag lag = tip_lag_.find(preset);
+    const BrushTipLag lag = tip_lag_.find(preset);
     const render::GlCamera c = camera_of(session_);
     CurveHand hand{.holder = stroke::holder_options(preset, s.paint_thread->surface().mesh()),
                    .settings = s.tools.curve_settings,

@@ -69,7 +69,7 @@ void release_lasso(Session& s) {
                  .perspective = c.parallel_height == 0,
                  .through = s.masks.choice.through};
     for (const Vec2& p : pixels) {
-        const render::GlRay ray = render::ray_at(c, p.x - s.view.area.x, p.y - s.view.area.y);
+        const Ray ray = render::ray_at(c, p.x - s.view.area.x, p.y - s.view.area.y);
         const Vec3 d = mask.view.perspective ? ray.direction / glm::dot(ray.direction, c.forward) : ray.origin - c.eye;
         mask.polygon.emplace_back(glm::dot(d, c.right), glm::dot(d, c.up));
     }

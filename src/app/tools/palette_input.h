@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/input/events.h"
-#include "app/input/pointer_input.h"
+#include "app/input/pointer.h"
 #include "app/state/colour_state.h"
 
 /// \file

@@ -4,7 +4,7 @@
 
 namespace tuft::app {
 
-TipLag TipLagCache::find(const brush::Preset& preset) {
+BrushTipLag TipLagCache::find(const brush::Preset& preset) {
     if (std::string content = brush::preset_toml(preset); measured_ != content) {
         measured_.clear();
         upright_ = tilted_.emplace(preset, stroke::shared_tip_lag_cache()).as_held();

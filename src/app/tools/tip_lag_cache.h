@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/input/pointer_input.h"
+#include "app/input/pointer.h"
 #include "stroke/placement/tip_lag.h"
 
 /// \file
@@ -16,7 +16,7 @@ class TipLagCache {
   public:
     /// Returns the tip lag of a brush; measures it when any value of its preset changed: a file may be written anew
     /// under its name. The result refers to this cache and is valid until another brush is requested.
-    TipLag find(const brush::Preset& preset);
+    BrushTipLag find(const brush::Preset& preset);
 
   private:
     std::vector<stroke::TipLag> upright_;

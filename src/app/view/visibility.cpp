@@ -1,6 +1,6 @@
 #include "app/view/visibility.h"
 
-#include "app/input/pointer_input.h"
+#include "app/input/pointer.h"
 
 namespace tuft::app {
 

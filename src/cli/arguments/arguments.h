@@ -96,6 +96,8 @@ struct HandChoice {
     double roll_deg = 0;            ///< roll of the holder, added to that of flat strokes
     bool roll_follow = false;       ///< the broad side of a ferrule turns across the path of flat strokes
     std::filesystem::path bias;     ///< file of the writer's bias to correct, or empty
+    bool as_pointer = false;        ///< flat strokes of a hand are painted as by the pointer of the studio
+    double pixel_mm = 0.1;          ///< at the model, of that pointer
 };
 
 /// Where flat strokes go, and how they lie there.

@@ -20,6 +20,7 @@
 #include "stroke/document/drawing_inks.h"
 #include "stroke/document/fit.h"
 #include "stroke/journal/tables.h"
+#include "stroke/pointer/pointer_strokes.h"
 
 namespace tuft::cli {
 namespace {
@@ -319,6 +320,37 @@ int run(const Paint& a) {
                      }});
 }
 
+std::vector<stroke::JournalEntry> draw_with_pointer(const std::vector<stroke::JournalEntry>& strokes,
+                                                    stroke::Document& painting, double pixel) {
+    std::vector<stroke::JournalEntry> out;
+    for (const stroke::JournalEntry& entry : strokes) {
+        const auto* flat = entry.as<stroke::PaintStroke>();
+        if (!flat || !flat->trace.flat || !flat->trace.stencil.empty()) {
+            out.push_back(entry);
+            continue;
+        }
+        const stroke::StrokeSettings& settings = flat->settings;
+        const bool pen = settings.pressure == stroke::PressureFrom::none;
+        const mesh::SurfaceQuery& surface = *painting.parts().surface();
+        const stroke::HolderOptions holder = painting.materials().holder(flat->brush, surface.mesh(), true);
+        stroke::PointerInput pointer(surface, painting.materials().brush(flat->brush),
+                                     stroke::pointer_settings(settings), {holder.tip_lag, holder.tip_lag_change});
+        const std::vector<stroke::Aim> aims = stroke::aims_of(flat->trace, surface.mesh().bounds, pixel, pen);
+        for (stroke::StrokeSamples& trace : stroke::draw_with_pointer(std::move(pointer), aims)) {
+            stroke::PaintStroke drawn = *flat;
+            drawn.trace = std::move(trace);
+            // The poses have them already.
+            drawn.settings.pressure = stroke::PressureFrom::none;
+            drawn.settings.smooth = drawn.settings.stabilise = drawn.settings.roll = 0;
+            drawn.settings.roll_follow = false;
+            stroke::JournalEntry& next = out.emplace_back(entry);
+            next.content = std::move(drawn);
+            next.group = {};  // drawn by hand, each is a stroke of its own
+        }
+    }
+    return out;
+}
+
 int paint(const Paint& a, const StrokeSource& source) {
     Outputs outputs{a.output.project, a.output.exported, a.output.preview, a.view, {}};
     check_outputs(outputs);
@@ -363,6 +395,7 @@ int paint(const Paint& a, const StrokeSource& source) {
     }
     const double prepared = seconds_since(start);
     prepare_strokes(strokes, painting, a, console);
+    if (a.hand.as_pointer) strokes = draw_with_pointer(strokes, painting, a.hand.pixel_mm * kMillimetre);
     check_sizes(strokes, painting, model, a);
     std::optional<io::Project> project = output_project(a, in_place, before.get(), outputs.frame, painting, strokes);
     Painted painted = paint_strokes(strokes, painting, project, a, console, start);

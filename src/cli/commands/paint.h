@@ -25,6 +25,11 @@ struct StrokeSource {
 void prepare_strokes(std::vector<stroke::JournalEntry>& strokes, stroke::Document& painting, const Paint& arguments,
                      Console& console);
 
+/// Returns the strokes with each flat one of a hand replaced by those in space that the studio's pointer makes of it.
+/// `pixel`: metres at the model. Drawings with a stencil stay.
+std::vector<stroke::JournalEntry> draw_with_pointer(const std::vector<stroke::JournalEntry>& strokes,
+                                                    stroke::Document& painting, double pixel);
+
 /// Throws `Error` for strokes that cannot be of this model's size.
 void check_sizes(const std::vector<stroke::JournalEntry>& strokes, stroke::Document& painting,
                  const stroke::Model& model, const Paint& arguments);

@@ -12,7 +12,7 @@ double half_height(const GlCamera& c) {
 
 }  // namespace
 
-GlRay ray_at(const GlCamera& c, double x, double y) {
+Ray ray_at(const GlCamera& c, double x, double y) {
     const double h = half_height(c);
     const double px = (2 * x / std::max(1, c.width) - 1) * h * c.width / std::max(1, c.height);
     const double py = (1 - 2 * y / std::max(1, c.height)) * h;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/geometry/types.h"
+#include "core/geometry/ray.h"
 
 /// \file
 /// Camera of the window and its rays. `app` uses it for view, picking and pointer input.
@@ -18,14 +18,8 @@ struct GlCamera {
     bool operator==(const GlCamera&) const = default;
 };
 
-/// Ray of the camera.
-struct GlRay {
-    Vec3 origin{0};           ///< metres, world
-    Vec3 direction{0, 1, 0};  ///< unit
-};
-
 /// The ray seen at a place of the picture (pixels, origin at the top left).
-GlRay ray_at(const GlCamera& camera, double x, double y);
+Ray ray_at(const GlCamera& camera, double x, double y);
 
 /// Place in the picture (pixels) and depth along `forward` (metres) of a point; a point
 /// behind a pinhole has a depth that is not positive.

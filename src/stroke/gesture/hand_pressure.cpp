@@ -17,13 +17,6 @@ constexpr double kLift = 0.06;        // seconds of it
 constexpr int kLiftSamples = 8;
 constexpr double kLook = 0.03;  // seconds of the trace that give its first speed
 
-double goal_of(const PressureState& s, const PressureOptions& o) {
-    double goal = o.level;
-    if (o.from != PressureFrom::dwell) goal *= 1 + o.speed_effect * std::expm1(-s.speed / o.fast);
-    if (o.from != PressureFrom::speed) goal *= 1 + o.dwell_effect * s.rest;
-    return std::clamp(goal, 0.0, 1.0);
-}
-
 double first_speed(const std::vector<StrokeSample>& samples) {
     double travel = 0;
     for (std::size_t i = 1; i < samples.size(); ++i) {
@@ -54,6 +47,20 @@ void lift_back(std::vector<StrokeSample>& samples, const std::vector<double>& le
 
 }  // namespace
 
+void track_motion(PressureState& s, double travel, double dt, const PressureOptions& o) {
+    s.speed += settled_part(dt, o.speed_time) * (travel / dt - s.speed);
+    const double slow = s.speed / o.still;
+    s.rest += settled_part(dt, o.dwell_time) * (1 / (1 + slow * slow) - s.rest);
+}
+
+double pressure_goal(const PressureState& s, const PressureOptions& o) {
+    double goal = o.level;
+    if (o.from != PressureFrom::dwell)
+        goal *= 1 - o.speed_effect * (o.linear ? std::min(1.0, s.speed / o.fast) : -std::expm1(-s.speed / o.fast));
+    if (o.from != PressureFrom::speed) goal *= 1 + o.dwell_effect * s.rest;
+    return std::clamp(goal, o.least, 1.0);
+}
+
 double press(PressureState& s, const Vec3& position, double time, const PressureOptions& o) {
     if (!s.started) {
         s.started = true;
@@ -63,11 +70,8 @@ double press(PressureState& s, const Vec3& position, double time, const Pressure
     }
     const double dt = time - s.time;
     if (!(dt > 0)) return s.pressure;  // the path is counted with the next sample
-    const double speed = glm::length(position - s.position) / dt;
-    s.speed += settled_part(dt, o.speed_time) * (speed - s.speed);
-    const double slow = s.speed / o.still;
-    s.rest += settled_part(dt, o.dwell_time) * (1 / (1 + slow * slow) - s.rest);
-    s.pressure += settled_part(dt, o.follow) * (goal_of(s, o) - s.pressure);
+    track_motion(s, glm::length(position - s.position), dt, o);
+    s.pressure += settled_part(dt, o.follow) * (pressure_goal(s, o) - s.pressure);
     s.time = time;
     s.position = position;
     return s.pressure;

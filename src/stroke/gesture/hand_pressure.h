@@ -7,8 +7,8 @@
 #include "stroke/journal/entry/settings.h"
 
 /// \file
-/// Pressure from motion, for devices that measure none: a mouse, a finger, a drawing. Called by hand.h. The pointer of
-/// the window has a law of its own, by fewer settings (app/input/pointer_input.h).
+/// Pressure from motion, for devices that measure none: a mouse, a finger, a drawing. Called by hand.h for whole traces
+/// and, step by step, by the pointer (pointer/pointer_input.h).
 namespace tuft::stroke {
 
 /// Pressure p of a hand with speed v and rest q:
@@ -17,8 +17,8 @@ namespace tuft::stroke {
 ///     dq/dt = (1 / (1 + (v/still)²) − q) / dwell_time,
 ///     dp/dt = (goal − p) / follow,
 ///
-/// with the first factor of the goal for `speed`, the second for `dwell`, and the goal clamped to [0, 1]. From pen down
-/// p rises to the goal in about 3 × `follow`. v is the speed of the samples after a low-pass of time `speed_time`.
+/// with the first factor of the goal for `speed`, the second for `dwell`, and the goal clamped to [least, 1]. From pen
+/// down p rises to the goal in about 3 × `follow`. v is the speed of the samples after a low-pass of time `speed_time`.
 struct PressureOptions {
     PressureFrom from = PressureFrom::speed_dwell;
     double level = 0.5;         ///< pressure of slow motion, part of the working depth, 0–1
@@ -29,6 +29,8 @@ struct PressureOptions {
     double dwell_time = 0.35;   ///< seconds
     double speed_time = 0.03;   ///< seconds
     double follow = 0.025;      ///< seconds
+    double least = 0;           ///< goal of a hand however fast, 0–1
+    bool linear = false;        ///< the loss is speed_effect min(1, v/fast) instead
 };
 
 /// Motion of the hand up to the last sample.
@@ -40,6 +42,11 @@ struct PressureState {
     double rest = 0;      ///< q
     double pressure = 0;  ///< 0–1
 };
+
+/// Takes the next step of a hand that moved `travel` metres in `dt` > 0 seconds: updates v and q.
+void track_motion(PressureState& state, double travel, double dt, const PressureOptions& options);
+/// Returns the goal of the pressure at the state's v and q.
+double pressure_goal(const PressureState& state, const PressureOptions& options);
 
 /// Returns the pressure of the next sample at `position` (metres) and `time` (seconds); 0 for the first one.
 /// Independent of the sampling rate to O(dt / follow).

@@ -23,7 +23,7 @@ void Thumbnails::look_from(const stroke::Model& model, const render::GlCamera& c
     pictures_.clear();
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x) {
-            const render::GlRay ray = render::ray_at(camera, x + 0.5, y + 0.5);
+            const Ray ray = render::ray_at(camera, x + 0.5, y + 0.5);
             const auto hit = model.query->ray(ray.origin, ray.direction);
             if (!hit) continue;
             const atlas::TexelRef texel =
