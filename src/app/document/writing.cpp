@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/files/extension.h"
 #include "core/text/units.h"
 #include "io/svg/svg.h"
 #include "stroke/journal/entries.h"
@@ -45,9 +46,7 @@ bool belongs_to_brush(const stroke::Preparation& preparation) {
 }
 
 bool is_svg(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-    return extension == ".svg";
+    return lower_extension(file) == ".svg";
 }
 
 std::vector<stroke::FlatArea*> areas_of(std::vector<stroke::RecordedStroke>& traces) {

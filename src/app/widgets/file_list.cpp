@@ -9,15 +9,14 @@
 #include <tuple>
 
 #include "core/files/system_message.h"
+#include "core/text/lower_case.h"
 
 namespace fs = std::filesystem;
 
 namespace tuft::app {
 
 std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
+    return lower_case(std::move(text));
 }
 
 std::vector<FileEntry> list_folder(const fs::path& folder, const std::function<bool(const fs::path&)>& suits,

@@ -8,6 +8,7 @@
 #include "cli/steps/commands.h"
 #include "cli/steps/steps.h"
 #include "core/error.h"
+#include "core/files/extension.h"
 #include "core/text/counted.h"
 #include "core/text/units.h"
 #include "io/sheet/painted_sheet.h"
@@ -16,13 +17,6 @@
 /// `tuft decals`: sheets of film from a project.
 namespace tuft::cli {
 namespace {
-
-std::string format_of(const Decals& a) {
-    std::string extension = a.output.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
 
 /// The mask whose areas are cut out, or 0.
 std::uint32_t mask_of(const Decals& a, const stroke::Document& painting) {
@@ -47,7 +41,7 @@ decal::SheetOptions sheet_options(const Decals& a, Console& console) {
     options.upright = a.print.grain == "up";
     options.pixel = 0.0254 / a.print.dpi;
     options.strain_map = a.print.strain_map;
-    options.prints = format_of(a) != ".dxf";
+    options.prints = lower_extension(a.output) != ".dxf";
     options.outlines = a.print.outlines;
     options.title = a.project.stem().string();
     options.progress = console.progress();
@@ -67,7 +61,7 @@ nlohmann::json piece_json(const decal::Piece& piece) {
 
 void check_request(const Decals& a) {
     check_extension(a.output, {".pdf", ".svg", ".dxf"});
-    if (a.print.plates && format_of(a) != ".pdf" && !a.print.outlines)
+    if (a.print.plates && lower_extension(a.output) != ".pdf" && !a.print.outlines)
         throw UsageError("--plates: plates are separations, which only a .pdf has; with --outlines they are layers");
     if (a.print.outlines && !a.mask.empty())
         throw UsageError("--outlines: those of what is painted; the outline of a mask is its cut line");
@@ -94,7 +88,7 @@ void print_outlined(const Decals& a, const decal::Sheet& sheet) {
         std::ranges::count_if(sheet.pieces, [](const decal::Piece& piece) { return !piece.outlined; }));
     if (mixed > 0)
         fmt::print("{} of several inks {} (--plates outlines each pigment)\n", counted(mixed, "piece"),
-                   format_of(a) == ".dxf" ? "without outlines" : "as pictures");
+                   lower_extension(a.output) == ".dxf" ? "without outlines" : "as pictures");
 }
 
 void print_result(const Decals& a, const decal::Sheet& sheet, const std::vector<std::string>& wrote) {

@@ -12,6 +12,7 @@
 #include <span>
 
 #include "cli/steps/drawing.h"
+#include "core/files/extension.h"
 #include "core/files/path_fault.h"
 #include "core/text/units.h"
 #include "ink/composite/composite.h"
@@ -166,9 +167,7 @@ void check_folder(const fs::path& folder) {
 
 void check_extension(const fs::path& path, const std::vector<std::string>& allowed) {
     if (path.empty()) return;
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lower_extension(path);
     if (std::find(allowed.begin(), allowed.end(), extension) != allowed.end()) return;
     throw UsageError(path.string() + ": the name must end in " + fmt::format("{}", fmt::join(allowed, ", ")));
 }

@@ -10,6 +10,7 @@
 #include FT_TRUETYPE_TABLES_H
 
 #include "core/error.h"
+#include "core/files/extension.h"
 #include "core/files/files.h"
 
 namespace tuft::io {
@@ -163,8 +164,7 @@ std::vector<ShapedGlyph> Font::shape(std::u32string_view run, const Shaping& sha
 }
 
 bool is_font_file(const std::filesystem::path& path) {
-    std::string kind = path.extension().string();
-    std::transform(kind.begin(), kind.end(), kind.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string kind = lower_extension(path);
     static constexpr std::string_view kKinds[] = {".ttf", ".otf", ".ttc", ".otc", ".woff", ".woff2", ".pfb"};
     return std::find(std::begin(kKinds), std::end(kKinds), kind) != std::end(kKinds);
 }

@@ -15,6 +15,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/files/extension.h"
 #include "core/files/files.h"
 #include "core/files/system_message.h"
 #include "core/system/interrupt.h"
@@ -25,13 +26,6 @@ namespace fs = std::filesystem;
 
 namespace tuft::io {
 namespace {
-
-std::string extension_of(const fs::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
 
 /// The program on $PATH; empty: it is not installed.
 fs::path find_ffmpeg() {
@@ -151,7 +145,7 @@ std::vector<std::string> ffmpeg_arguments(const fs::path& program, const fs::pat
                                        "+faststart",
                                        "-f",
                                        "mp4"};
-    const std::vector<std::string>& more = extension_of(output) == ".gif" ? gif : mp4;
+    const std::vector<std::string>& more = lower_extension(output) == ".gif" ? gif : mp4;
     a.insert(a.end(), more.begin(), more.end());
     a.push_back("file:" + output.string());
     return a;
@@ -261,7 +255,7 @@ class NoPipeSignal {
 }  // namespace
 
 bool is_film_file(const fs::path& path) {
-    return extension_of(path) == ".mp4" || extension_of(path) == ".gif";
+    return lower_extension(path) == ".mp4" || lower_extension(path) == ".gif";
 }
 
 void check_film(const fs::path& path) {

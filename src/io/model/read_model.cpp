@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/files/extension.h"
 #include "core/files/files.h"
 #include "io/gltf/read_gltf.h"
 #include "io/model/read_3mf.h"
@@ -21,13 +22,6 @@ namespace {
 constexpr std::size_t kHead = 96;  // bytes that show the format
 
 enum class Format { obj, ply, stl, off, glb, gltf, fbx, dae, threemf, x3d, vrml, step, iges };
-
-std::string lower_extension(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
 
 std::optional<Format> by_extension(const std::filesystem::path& path) {
     constexpr std::array<std::pair<std::string_view, Format>, 17> known{{{".obj", Format::obj},

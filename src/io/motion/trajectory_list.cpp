@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/files/extension.h"
 #include "core/files/files.h"
 #include "core/text/nesting.h"
 #include "io/motion/motion_files.h"
@@ -64,13 +65,6 @@ std::vector<stroke::RecordedStroke> strokes_of_list(const json& file) {
     }
     for (const stroke::RecordedStroke& s : strokes) stroke::check_samples(s);
     return strokes;
-}
-
-std::string lower_extension(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
 }
 
 void write_text(const std::filesystem::path& path, const std::string& text) {

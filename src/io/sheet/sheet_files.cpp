@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "core/files/extension.h"
 #include "core/files/files.h"
 #include "io/export/export.h"
 
@@ -40,9 +41,7 @@ std::string ink_layer(const std::string& ink) {
 }
 
 std::vector<fs::path> write_sheet(const fs::path& path, const decal::Sheet& sheet) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lower_extension(path);
     if (extension == ".pdf") {
         write_text(path, pdf_bytes(sheet));
         return {path};

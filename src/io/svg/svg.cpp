@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/files/extension.h"
 #include "core/files/files.h"
 #include "io/motion/motion_files.h"
 #include "io/package/xml_entities.h"
@@ -302,9 +303,7 @@ std::vector<stroke::RecordedStroke> read_svg(const std::filesystem::path& path, 
 }
 
 std::vector<stroke::RecordedStroke> read_strokes(const std::filesystem::path& path, const SvgOptions& options) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lower_extension(path);
     if (extension == ".json" || extension == ".csv") return read_trajectory(path);
     return extension == ".svg" ? read_svg(path, options) : read_inkml(path, options.ink);
 }

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "core/ease.h"
+#include "core/hat.h"
 #include "core/system/interrupt.h"
 #include "stroke/drawing/plane_ink.h"
 #include "stroke/gesture/roll.h"
@@ -219,7 +220,7 @@ std::vector<T> smoothed(const std::vector<T>& v, const std::vector<double>& alon
         T sum{};
         double all = 0;
         for (std::size_t k = first; k < v.size() && along[k] - along[i] <= soft; ++k) {
-            const double w = 1 - std::abs(along[k] - along[i]) / (1.001 * soft);
+            const double w = hat(along[k] - along[i], 1.001 * soft);
             sum += w * v[k];
             all += w;
         }

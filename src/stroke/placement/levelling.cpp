@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/hat.h"
 #include "stroke/placement/smoothed_surface.h"
 
 namespace tuft::stroke {
@@ -14,6 +15,7 @@ constexpr double kCells = 64;       // to a radius of path, over which normals a
 constexpr double kNear = 0.5;       // radians: normals further off belong to a groove's wall
 constexpr double kStations = 16;    // to a radius of path, at which heights are found
 constexpr double kSoft = 0.25;      // radii over which a line is fitted to them
+constexpr double kSupport = 1.001;  // of them: the outermost station counts a little
 constexpr double kMostCells = 2e6;  // cells, or stations, of one path
 
 /// Means of the normals over even cells of path.
@@ -85,7 +87,7 @@ class Stations {
         };
         double w = 0, x = 0, xx = 0, z = 0, xz = 0;
         for (auto k = static_cast<std::size_t>(std::ceil(at(s - soft))); static_cast<double>(k) <= at(s + soft); ++k) {
-            const double off = static_cast<double>(k) * spacing_ - s, weight = 1 - std::abs(off) / (1.001 * soft);
+            const double off = static_cast<double>(k) * spacing_ - s, weight = hat(off, kSupport * soft);
             if (weight <= 0) continue;
             const double up = glm::dot(level(k) - position, normal);
             w += weight, x += weight * off, xx += weight * off * off, z += weight * up, xz += weight * off * up;

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/text/lower_case.h"
 #include "io/svg/style/svg_css.h"
 
 namespace tuft::io {
@@ -34,9 +35,7 @@ constexpr std::array kNames{"font",
                             "white-space"};
 
 std::string lower(std::string_view text) {
-    std::string out(stripped(text));
-    std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return std::tolower(c); });
-    return out;
+    return lower_case(std::string(stripped(text)));
 }
 
 /// A length in user units; em and per cent are of `em`. Nothing for any other text.
