@@ -49,15 +49,16 @@ Vec3 faded(const LawOptions& options, LawState& s, const Vec3& g, double moved) 
     return g + s.fade.offset;
 }
 
-/// Keeps root and velocity to the free side of all bounds. Returns the moment of what holds them, about the root.
-struct Held {
-    Vec3 moment{0};
-    bool hard = false;
+/// What bounds do to the root that they stop.
+struct BoundReaction {
+    Vec3 moment{0};     ///< N·m, about the root
+    bool hard = false;  ///< a bound stopped it
 };
 
-Held hold_to_bounds(const LawOptions& options, const HairAnswer& hair, Vec3& root, Vec3& velocity) {
+/// Keeps root and velocity to the free side of all bounds.
+BoundReaction hold_to_bounds(const LawOptions& options, const HairAnswer& hair, Vec3& root, Vec3& velocity) {
     constexpr int kPasses = 4;  // bounds of a corner or a gap push against each other
-    Held held;
+    BoundReaction held;
     for (int pass = 0; pass < kPasses; ++pass) {
         bool moved = false;
         for (std::size_t i = 0; i < hair.n_bounds; ++i) {
@@ -279,7 +280,7 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     const Vec3 pull = K * (in.arm + s.root.restored - s.root.position) + B * s.arm.velocity + g;
     Vec3 velocity = (m * s.root.velocity + T * pull) / (m + T * (K * T + B));
     Vec3 root = s.root.position + T * velocity;
-    Held held;
+    BoundReaction held;
     if (in.hair) held = hold_to_bounds(options, *in.hair, root, velocity);
     s.root.position = root;
     s.root.velocity = velocity;

@@ -106,7 +106,7 @@ struct EnergyTank {
     Vec3 counted_force{0};        ///< N, f₋ smoothed
 };
 
-/// What the law remembers from period to period.
+/// State of the law between two periods.
 struct LawState {
     bool started = false;
     ArmMotion arm;
@@ -120,7 +120,7 @@ struct LawState {
     bool free = true;    ///< neither hair nor ferrule touches
 };
 
-/// What one period of the law takes.
+/// Input of one period.
 struct LawInput {
     Vec3 arm{0};                       ///< x, m, world
     Quat rotation{1, 0, 0, 0};         ///< q
@@ -129,7 +129,7 @@ struct LawInput {
     double pass = 1;  ///< of the force: 0 on a fault or a pause … 1; scales what leaves, before the tank
 };
 
-/// What one period of the law gives.
+/// Result of one period.
 struct LawOutput {
     Vec3 force{0};         ///< f on the hand, N, world
     Vec3 torque{0};        ///< N·m, world; 0 for an arm without torque

@@ -112,7 +112,7 @@ TEST(TrussModel, NoSpringIsEverTooLong) {
         for (int k = 0; k < 40; ++k) {
             std::vector<Vec3> x = truss.rest;
             for (int i = 0; i < truss.base_count(); ++i) x[i] += Vec3{0.002 * k, 0.001 * k * std::sin(k), 0.02};
-            Ground ground;
+            StepContact ground;
             ground.below.assign(truss.count, {Vec3{0, 0, -0.02}, Vec3{0, 0, 1}});
             limit_stretch(truss, ground, x);
             EXPECT_LE(largest_stretch(truss, x), kMostStretch + 1e-12);
@@ -149,7 +149,7 @@ std::vector<RingShape> cone() {
 TEST(TrussSkin, WeightsSumToOneAndKeepAffineMotions) {
     for (const Kind kind : {Kind::round, Kind::flat, Kind::filbert}) {
         const Truss truss = make_truss({.kind = kind, .half_width = 6e-3, .half_thickness = 2e-3}, 2e-4);
-        const Skin coarse = make_control_skin(truss, cone()), fine = subdivide(subdivide(coarse));
+        const ButterflyMesh coarse = make_control_skin(truss, cone()), fine = subdivide(subdivide(coarse));
         EXPECT_EQ(fine.triangles.size(), 16 * coarse.triangles.size());
         const Mat3 a{{1.1, 0.2, -0.1}, {0.05, 0.9, 0.3}, {-0.4, 0.1, 1.2}};
         const Vec3 shift{0.3, -0.2, 0.1};
@@ -166,7 +166,7 @@ TEST(TrussSkin, WeightsSumToOneAndKeepAffineMotions) {
 
 TEST(TrussSkin, RefinementInterpolatesAndClosesAllButTheRoot) {
     const Truss truss = make_truss({}, 2e-4);
-    const Skin coarse = make_control_skin(truss, cone()), fine = subdivide(coarse);
+    const ButterflyMesh coarse = make_control_skin(truss, cone()), fine = subdivide(coarse);
     for (int v = 0; v < coarse.vertices(); ++v)
         EXPECT_EQ(place(fine.row(v), truss.rest), place(coarse.row(v), truss.rest));
     std::multiset<std::pair<int, int>> edges;

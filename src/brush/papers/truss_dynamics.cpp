@@ -50,12 +50,12 @@ Vec3 shortening(const Vec3& d, double most, const HalfSpace* touched) {
 }
 
 /// Contracts all springs that are too long by the mean displacement of those at each point; whether there were any.
-bool contract_all(const Truss& truss, const Ground& ground, std::vector<Vec3>& particles) {
+bool contract_all(const Truss& truss, const StepContact& contact, std::vector<Vec3>& particles) {
     std::vector<Vec3> displacement(static_cast<std::size_t>(truss.count), Vec3{0});
     std::vector<int> count(displacement.size(), 0);
     const int base = truss.base_count();
     const auto pull = [&](int point, int other, const Spring& s, double share) {
-        const HalfSpace* space = ground.below.empty() ? nullptr : &ground.below[point - base];
+        const HalfSpace* space = contact.below.empty() ? nullptr : &contact.below[point - base];
         const bool touches = space != nullptr && space->height(particles[point]) <= kOnSurface;
         const double most = (1 + kMostStretch - kSlack) * s.rest;
         displacement[point - base] +=
@@ -155,7 +155,7 @@ std::vector<double> step_matrix(const Truss& truss, double h) {
     return {inverse.data(), inverse.data() + inverse.size()};
 }
 
-void move_points(const Truss& truss, std::span<const double> matrix, const Ground& ground,
+void move_points(const Truss& truss, std::span<const double> matrix, const StepContact& contact,
                  std::vector<Vec3>& particles) {
     const std::vector<Vec3> force = spring_forces(truss, particles);
     const int base = truss.base_count();
@@ -163,12 +163,12 @@ void move_points(const Truss& truss, std::span<const double> matrix, const Groun
         Vec3& x = particles[base + j];
         Vec3 move{0};
         for (int i = 0; i < truss.count; ++i) move += matrix[j * truss.count + i] * force[base + i];
-        if (!ground.below.empty()) {
-            const HalfSpace& space = ground.below[j];
+        if (!contact.below.empty()) {
+            const HalfSpace& space = contact.below[j];
             const double pressing = -glm::dot(force[base + j], space.normal);
             if (pressing > 0 && space.height(x) <= kOnSurface) {
                 const Vec3 tangential = force[base + j] + pressing * space.normal;
-                const double size = glm::length(tangential), held = ground.friction * pressing;
+                const double size = glm::length(tangential), held = contact.friction * pressing;
                 const Vec3 along = move - glm::dot(move, space.normal) * space.normal;
                 move -= along * (held < size ? held / size : 1.0);
             }
@@ -179,12 +179,12 @@ void move_points(const Truss& truss, std::span<const double> matrix, const Groun
     }
 }
 
-void limit_stretch(const Truss& truss, const Ground& ground, std::vector<Vec3>& particles) {
+void limit_stretch(const Truss& truss, const StepContact& contact, std::vector<Vec3>& particles) {
     const int base = truss.base_count();
     for (int sweep = 0; sweep < kContractions; ++sweep) {
-        for (int j = 0; j < truss.count && !ground.below.empty(); ++j)
-            particles[base + j] = ground.below[j].projected(particles[base + j]);
-        if (!contract_all(truss, ground, particles)) return;
+        for (int j = 0; j < truss.count && !contact.below.empty(); ++j)
+            particles[base + j] = contact.below[j].projected(particles[base + j]);
+        if (!contract_all(truss, contact, particles)) return;
     }
     const Vec3 centre = base_centre(truss, particles);
     double factor = 1;

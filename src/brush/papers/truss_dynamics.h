@@ -76,7 +76,7 @@ double largest_stretch(const Truss& truss, std::span<const Vec3> particles);
 std::vector<double> step_matrix(const Truss& truss, double h);
 
 /// How the points meet the surface during a step. Empty: free in air.
-struct Ground {
+struct StepContact {
     std::vector<HalfSpace> below;  ///< one per point, or none
     double friction = 0;           ///< μ
 };
@@ -84,12 +84,12 @@ struct Ground {
 /// Moves the points over h seconds with the base at rest: the dynamics, friction and projection onto the surface. The
 /// paper reduces the velocity of a colliding particle instead of adding a drag [p]. From −μ ‖F_n‖ v̂_t, where the print
 /// has v_t without the hat [R], it is v_t max(0, 1 − μ F_n/F_t).
-void move_points(const Truss& truss, std::span<const double> matrix, const Ground& ground,
+void move_points(const Truss& truss, std::span<const double> matrix, const StepContact& contact,
                  std::vector<Vec3>& particles);
 
 /// Contracts springs that are too long, at most 20 sweeps, each followed by the projection; what still is too long is
 /// contracted about the centre of the base [X]. After it no spring is more than kMostStretch long. No point is below
 /// the surface if the base is above.
-void limit_stretch(const Truss& truss, const Ground& ground, std::vector<Vec3>& particles);
+void limit_stretch(const Truss& truss, const StepContact& contact, std::vector<Vec3>& particles);
 
 }  // namespace tuft::brush::truss

@@ -86,8 +86,8 @@ class TrussModel final : public SpineModel {
 
   private:
     double friction(double wetness) const { return std::lerp(preset_.friction_dry, preset_.friction_wet, wetness); }
-    Ground ground_of(const SpineModelInput& input) const;
-    void nudge(const SpineModelInput& input, const Ground& ground);
+    StepContact step_contact(const SpineModelInput& input) const;
+    void nudge(const SpineModelInput& input, const StepContact& contact);
     void move(const SpineModelInput& input);
     Vec3 hand_force(const SpineModelInput& input) const;
     Recycled<Section> make_sections(const SpineModelInput& input);
@@ -114,17 +114,17 @@ void TrussModel::straighten(const Pose& pose) {
     for (const SkinSection& s : skin_) nodes_.push_back(s.centre(particles_));
 }
 
-Ground TrussModel::ground_of(const SpineModelInput& input) const {
-    Ground ground{{}, friction(input.wetness)};
+StepContact TrussModel::step_contact(const SpineModelInput& input) const {
+    StepContact contact{{}, friction(input.wetness)};
     for (int j = 0; j < truss_.count && !input.planes.empty(); ++j)
-        ground.below.push_back(half_space_of(input.planes.front(), particles_[truss_.base_count() + j]));
-    return ground;
+        contact.below.push_back(half_space_of(input.planes.front(), particles_[truss_.base_count() + j]));
+    return contact;
 }
 
 /// A point pressed straight down balances; the hair falls behind the hand's motion.
-void TrussModel::nudge(const SpineModelInput& input, const Ground& ground) {
-    if (ground.below.empty()) return;
-    const Vec3& n = ground.below.front().normal;
+void TrussModel::nudge(const SpineModelInput& input, const StepContact& contact) {
+    if (contact.below.empty()) return;
+    const Vec3& n = contact.below.front().normal;
     const Vec3 moved = input.pose.position - pose_.position, along = moved - glm::dot(moved, n) * n;
     if (glm::length(along) > kTrails * preset_.length) aside_ = -glm::normalize(along);
     const Vec3 to = aside_ != Vec3{0} ? aside_ : input.pose.rotation * Vec3{1, 0, 0};
@@ -132,15 +132,15 @@ void TrussModel::nudge(const SpineModelInput& input, const Ground& ground) {
         const int i = truss_.base_count() + j;
         const Vec3 at_rest = input.pose.position + input.pose.rotation * truss_.rest[i];
         const Vec3 off = particles_[i] - at_rest, across = off - glm::dot(off, pose_.axis()) * pose_.axis();
-        if (ground.below[j].height(at_rest) < 0 && glm::length(across) < kNudge * preset_.length)
+        if (contact.below[j].height(at_rest) < 0 && glm::length(across) < kNudge * preset_.length)
             particles_[i] += kNudge * preset_.length * (to - glm::dot(to, n) * n);
     }
 }
 
 void TrussModel::move(const SpineModelInput& input) {
     const std::vector<Vec3> before(particles_.begin(), particles_.begin() + truss_.base_count());
-    const Ground ground = ground_of(input);
-    nudge(input, ground);
+    const StepContact contact = step_contact(input);
+    nudge(input, contact);
     // Four edges meet at a point, and the springs to its neighbours.
     const double stiffest = truss_.stiffness * (4 + std::min(2, truss_.count - 1));
     const double wanted = std::ceil(input.dt * stiffest / truss_.drag);
@@ -151,9 +151,9 @@ void TrussModel::move(const SpineModelInput& input) {
             const Vec3 after = input.pose.position + input.pose.rotation * truss_.rest[i];
             particles_[i] = k == steps ? after : glm::mix(before[i], after, static_cast<double>(k) / steps);
         }
-        move_points(truss_, matrix, ground, particles_);
+        move_points(truss_, matrix, contact, particles_);
     }
-    limit_stretch(truss_, ground, particles_);
+    limit_stretch(truss_, contact, particles_);
 }
 
 /// The force law of 4.2 to 4.4, newtons, world.

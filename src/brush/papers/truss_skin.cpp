@@ -17,7 +17,7 @@ Edge edge_of(int a, int b) {
 }
 
 /// Vertices opposite to each edge: one on a boundary, else two.
-std::map<Edge, std::vector<int>> opposite_vertices(const Skin& skin) {
+std::map<Edge, std::vector<int>> opposite_vertices(const ButterflyMesh& skin) {
     std::map<Edge, std::vector<int>> out;
     for (const auto& t : skin.triangles)
         for (int k = 0; k < 3; ++k) out[edge_of(t[k], t[(k + 1) % 3])].push_back(t[(k + 2) % 3]);
@@ -38,7 +38,7 @@ std::map<int, std::vector<int>> boundary_neighbours(const std::map<Edge, std::ve
 /// Rows of weights of one mesh.
 class Rows {
   public:
-    explicit Rows(const Skin& skin) : skin_(skin), sum_(static_cast<std::size_t>(skin.particles), 0) {}
+    explicit Rows(const ButterflyMesh& skin) : skin_(skin), sum_(static_cast<std::size_t>(skin.particles), 0) {}
 
     void add(int vertex, double factor) {
         const std::span<const double> row = skin_.row(vertex);
@@ -47,7 +47,7 @@ class Rows {
     const std::vector<double>& sum() const { return sum_; }
 
   private:
-    const Skin& skin_;
+    const ButterflyMesh& skin_;
     std::vector<double> sum_;
 };
 
@@ -63,7 +63,7 @@ void add_wing(const std::map<Edge, std::vector<int>>& opposite, int a, int b, in
     rows.add(inner, -factor);
 }
 
-std::vector<double> edge_vertex(const Skin& skin, const std::map<Edge, std::vector<int>>& opposite,
+std::vector<double> edge_vertex(const ButterflyMesh& skin, const std::map<Edge, std::vector<int>>& opposite,
                                 const std::map<int, std::vector<int>>& boundary, const Edge& edge) {
     Rows rows(skin);
     const auto [a, b] = edge;
@@ -130,8 +130,8 @@ Vec3 place(std::span<const double> weights, std::span<const Vec3> particles) {
     return sum;
 }
 
-Skin make_control_skin(const Truss& truss, std::span<const RingShape> rings) {
-    Skin skin{static_cast<int>(truss.rest.size()), {}, {}};
+ButterflyMesh make_control_skin(const Truss& truss, std::span<const RingShape> rings) {
+    ButterflyMesh skin{static_cast<int>(truss.rest.size()), {}, {}};
     const auto add = [&](double x, double y, double u) {
         const std::vector<double> w = control_weights(truss, x, y, u);
         skin.weight.insert(skin.weight.end(), w.begin(), w.end());
@@ -162,10 +162,10 @@ Skin make_control_skin(const Truss& truss, std::span<const RingShape> rings) {
     return skin;
 }
 
-Skin subdivide(const Skin& skin) {
+ButterflyMesh subdivide(const ButterflyMesh& skin) {
     const auto opposite = opposite_vertices(skin);
     const auto boundary = boundary_neighbours(opposite);
-    Skin out{skin.particles, skin.weight, {}};
+    ButterflyMesh out{skin.particles, skin.weight, {}};
     std::map<Edge, int> middle;
     for (const auto& entry : opposite) {
         middle[entry.first] = out.vertices();
@@ -182,7 +182,7 @@ Skin subdivide(const Skin& skin) {
 namespace {
 
 /// The ring round the root: the boundary in order.
-std::vector<int> boundary_ring(const Skin& skin) {
+std::vector<int> boundary_ring(const ButterflyMesh& skin) {
     const auto neighbours = boundary_neighbours(opposite_vertices(skin));
     std::vector<int> ring{0};
     int before = -1;
@@ -196,7 +196,7 @@ std::vector<int> boundary_ring(const Skin& skin) {
 }
 
 /// Distance of each vertex from the root's ring in edges.
-std::vector<int> levels_from(const Skin& skin, const std::vector<int>& ring) {
+std::vector<int> levels_from(const ButterflyMesh& skin, const std::vector<int>& ring) {
     std::vector<int> level(static_cast<std::size_t>(skin.vertices()), -1);
     std::vector<int> front = ring;
     for (const int v : ring) level[v] = 0;
@@ -233,7 +233,7 @@ double SkinSection::semi_axis(std::span<const Vec3> particles, const Vec3& d) co
 }
 
 std::vector<SkinSection> skin_sections(const Truss& truss, std::span<const RingShape> shapes, int refinements) {
-    Skin skin = make_control_skin(truss, shapes);
+    ButterflyMesh skin = make_control_skin(truss, shapes);
     for (int k = 0; k < refinements; ++k) skin = subdivide(skin);
     const std::vector<int> level = levels_from(skin, boundary_ring(skin));
     const auto count = static_cast<std::size_t>(skin.particles);

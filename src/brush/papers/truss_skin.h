@@ -22,7 +22,7 @@
 namespace tuft::brush::truss {
 
 /// Vertices as weights on the particles, and triangles, counter-clockwise from outside.
-struct Skin {
+struct ButterflyMesh {
     int particles = 0;
     std::vector<double> weight;                 ///< [vertices × particles] by rows; each row sums to 1
     std::vector<std::array<int, 3>> triangles;  ///< vertex indices
@@ -45,10 +45,10 @@ inline constexpr int kRingPoints = 8;  ///< of the control mesh [X]
 /// at u = 1; the others are open at the toe, which is their last ring. A vertex at (x, y, u) is (1 − u) times its place
 /// in the base plane and u times that at the points, interpolated in x between the trusses and extrapolated beyond; so
 /// at rest it lies at (x, y, −u L(x)).
-Skin make_control_skin(const Truss& truss, std::span<const RingShape> rings);
+ButterflyMesh make_control_skin(const Truss& truss, std::span<const RingShape> rings);
 
 /// Returns the skin with each triangle divided into four. Old vertices keep their index and place.
-Skin subdivide(const Skin& skin);
+ButterflyMesh subdivide(const ButterflyMesh& skin);
 
 /// Returns the place of a row of weights, metres.
 Vec3 place(std::span<const double> weights, std::span<const Vec3> particles);

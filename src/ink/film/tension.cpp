@@ -17,7 +17,7 @@ constexpr int kSweepsBefore = 2, kSweepsAfter = 2, kSweepsOfLast = 8;
 
 /// Copies the border of one cell from the tiles around.
 template <int N>
-void take_border(std::array<float, Grid<N>::kRoom>& to, const std::array<const float*, 9>& from) {
+void take_border(std::array<float, Grid<N>::kPadded>& to, const std::array<const float*, 9>& from) {
     const auto copy = [&](int column, int row, std::size_t tile, int its_column, int its_row) {
         to[static_cast<std::size_t>(Grid<N>::at(column, row))] =
             from[tile] ? from[tile][Grid<N>::at(its_column, its_row)] : 0;

@@ -18,14 +18,18 @@ namespace tuft::ink::wet {
 ///
 ///     v + ∇·(M ∇p) = f,   p = ∇·(C ∇v) + e      (both ∇· with the sign of outflow)
 ///
+/// for the change v of thickness in the step, film units, and the pressure p, film units, since σ and the texel's area
+/// A stand in the mobility M = σ dt w³ / (3 η A²), 1. C: conductance of faces, 1. e: p of the thickness w before the
+/// step. f: 0 on the finest grid, on others what the finer one is missing, film units. ∇ by differences of cells.
+///
 /// Faces: right of columns −1 to N − 1, above rows −1 to N − 1; squares: above and right of both.
 template <int N>
 struct alignas(64) Grid {
     static constexpr int kCells = N, kRow = N + 2, kSquareRow = N + 1;
-    static constexpr std::size_t kRoom = static_cast<std::size_t>(kRow * kRow + 15) / 16 * 16 + 32;
+    static constexpr std::size_t kPadded = static_cast<std::size_t>(kRow * kRow + 15) / 16 * 16 + 32;
     static constexpr int at(int column, int row) { return (row + 1) * kRow + 1 + column; }
 
-    alignas(64) std::array<float, kRoom> v{}, p{};
+    alignas(64) std::array<float, kPadded> v{}, p{};
     alignas(64) std::array<float, N * N> f{}, e{};
     alignas(64) std::array<float, N * N> area{}, inverse{};             ///< over a texel's; 0: closed
     alignas(64) std::array<float, N*(N + 1)> cx{}, mx{}, cy{}, my{};    ///< conductance, that times mobility
@@ -49,9 +53,9 @@ struct TensionLink {
 struct TensionTile {
     std::uint32_t place = kNone;  ///< in the list
     float held = 0;
-    std::array<std::uint32_t, 9> around{};                         ///< places in the set
-    Field w{};                                                     ///< liquid on the surface
-    alignas(64) std::array<float, Grid<kSide>::kRoom> mobility{};  ///< σ dt w³ / (3 η A²); 0: closed
+    std::array<std::uint32_t, 9> around{};                           ///< places in the set
+    Field w{};                                                       ///< liquid on the surface
+    alignas(64) std::array<float, Grid<kSide>::kPadded> mobility{};  ///< σ dt w³ / (3 η A²); 0: closed
     Grid<16> grid;
     Grid<8> grid2;
     Grid<4> grid4;

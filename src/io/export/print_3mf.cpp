@@ -76,10 +76,10 @@ struct Facet {
     bool mixed = false;  // samples would get different filaments
 };
 
-class Painter {
+class FilamentSubdivision {
   public:
-    Painter(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas, const ink::AtlasMap<float>& colour,
-            const PaintOptions& options)
+    FilamentSubdivision(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas, const ink::AtlasMap<float>& colour,
+                        const PaintOptions& options)
         : colour_(colour), options_(options) {
         for (const Vec3f& p : mesh.positions) positions_.emplace_back(p);
         for (std::size_t t = 0; t < mesh.n_triangles(); ++t) {
@@ -257,7 +257,7 @@ PaintedTriangles paint_triangles(const mesh::TriangleMesh& mesh, const atlas::At
                                  const ink::AtlasMap<float>& colour, const PaintOptions& options) {
     if (options.filaments.empty() || options.filaments.size() > ink::kMostFilaments)
         throw Error(Message("there must be 1 to {} filaments", ink::kMostFilaments));
-    return Painter(mesh, atlas, colour, options).run();
+    return FilamentSubdivision(mesh, atlas, colour, options).run();
 }
 
 void write_painted_3mf(const std::filesystem::path& path, const PaintedTriangles& painted,

@@ -32,13 +32,13 @@ struct Posed {
 /// How a wide ferrule is moved: over its broad side, or along it.
 enum class Side { broad, edge };
 
-/// A hand over the sheet z = 0. `tilt` about y leans the holder ahead of a motion to the left,
+/// A brush in a hand over the sheet z = 0. `tilt` about y leans the holder ahead of a motion to the left,
 /// `slant` about x leans it across.
-struct Hand {
+struct SimulatedBrush {
     Posed now;
     double lowest = 0;  ///< of the root, where the lowest straight hair touches
 
-    Hand(const Preset& p, double tilt, double slant, Side side) {
+    SimulatedBrush(const Preset& p, double tilt, double slant, Side side) {
         now.tuft = make_tuft(p, 3);
         now.pose.rotation = glm::angleAxis(-tilt, Vec3{0, 1, 0}) * glm::angleAxis(slant, Vec3{1, 0, 0});
         if (has_broad_side(now.tuft.preset) && side == Side::broad)
@@ -142,10 +142,10 @@ void draw_row(const Sheet& sheet, double top, double tilt, Side side, const char
     const double length = sheet.preset.length;
     for (int k = 0; k < kColumns; ++k) {
         const bool lifted = k + 1 == kColumns;
-        Hand hand(sheet.preset, tilt, 0, side);
-        hand.press(kPressings[std::min(k, kColumns - 2)] * length);
-        if (lifted) hand.lift(0.12 * length);
-        const Posed& at = hand.now;
+        SimulatedBrush brush(sheet.preset, tilt, 0, side);
+        brush.press(kPressings[std::min(k, kColumns - 2)] * length);
+        if (lifted) brush.lift(0.12 * length);
+        const Posed& at = brush.now;
         // The scale begins under the tuft's root; where the holder leans, it begins at its axis'
         // foot.
         const double foot = std::tan(tilt) * at.pose.position.z;
@@ -181,25 +181,25 @@ void draw_tips(const Sheet& sheet, double top) {
     const int smaller = patch_reduction(sheet.preset, 1.1 * sheet.scale, 130 * u);
     for (int k = 0; k < 4; ++k) {
         TuftAppearance appearance;
-        Hand hand(sheet.preset, k == 1 ? 0.2 : 0, k == 0 ? 0.7 : 0, Side::broad);
+        SimulatedBrush brush(sheet.preset, k == 1 ? 0.2 : 0, k == 0 ? 0.7 : 0, Side::broad);
         std::string name = "slanted tip, along one side";
         if (k == 2) {
-            hand.now.tuft.ink_left = 0.05;
-            hand.now.tuft.wetness = 0.4;
-            hand.now.tuft.preset.split_factor = 3;  // the paper's: shipped hair parts later, in bundles
+            brush.now.tuft.ink_left = 0.05;
+            brush.now.tuft.wetness = 0.4;
+            brush.now.tuft.preset.split_factor = 3;  // the paper's: shipped hair parts later, in bundles
             name = "split tip, short of ink";
         } else if (k == 3) {
             appearance.dry = true;
-            hand.now.tuft.wetness = 0;
-            for (double& apart : hand.now.tuft.bundles.separation) apart = 1;
+            brush.now.tuft.wetness = 0;
+            for (double& apart : brush.now.tuft.bundles.separation) apart = 1;
             name = "dry tip, in bundles";
         }
-        hand.press((k == 0 ? 0.25 : k == 1 ? 0.25 : k == 2 ? 0.42 : 0.34) * length);
+        brush.press((k == 0 ? 0.25 : k == 1 ? 0.25 : k == 2 ? 0.42 : 0.34) * length);
         if (k == 1) {
-            for (int i = 0; i < 12; ++i) hand.move(kStride * length, hand.now.pose.position.z);
+            for (int i = 0; i < 12; ++i) brush.move(kStride * length, brush.now.pose.position.z);
             name = "reversed tip, pushed on";
         }
-        const Posed& at = hand.now;
+        const Posed& at = brush.now;
         BrushView view;
         view.scale = 1.1 * sheet.scale;
         view.origin = {at.pose.position.x, at.pose.position.y, 0};

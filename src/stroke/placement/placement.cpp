@@ -34,12 +34,12 @@ double working_depth(const brush::Preset& preset) {
     return 0.5 * preset.length;
 }
 
-bool bends_across(const brush::Preset& preset) {
+bool is_bent_across(const brush::Preset& preset) {
     return brush::has_broad_side(preset) && preset.lean > 0 && preset.slant == 0;
 }
 
-bool lags_by_turn(const brush::Preset& preset) {
-    return brush::has_broad_side(preset) && !bends_across(preset) && preset.slant == 0;
+bool has_lag_by_turn(const brush::Preset& preset) {
+    return brush::has_broad_side(preset) && !is_bent_across(preset) && preset.slant == 0;
 }
 
 HolderOptions holder_options(const brush::Preset& preset) {
@@ -52,8 +52,8 @@ HolderOptions holder_options(const brush::Preset& preset) {
             .tip_lag_turn = std::min(preset.slant > 0 ? 0.4e-3 : HolderOptions{}.tip_lag_turn, 0.075 * preset.length),
             .blade_landing = preset.slant > 0 ? 0.4 * preset.length : 0,
             .lean = preset.lean,
-            .across = bends_across(preset),
-            .turned = lags_by_turn(preset)};
+            .across = is_bent_across(preset),
+            .turned = has_lag_by_turn(preset)};
 }
 
 HolderOptions holder_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh) {

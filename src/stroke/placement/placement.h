@@ -105,8 +105,8 @@ struct HolderOptions {
     /// blade.
     double blade_landing = 0;
     double lean = 0;      ///< radians, `brush::Preset::lean`
-    bool across = false;  ///< `bends_across`: lean and tip lag are across the broad side; false: along the path
-    bool turned = false;  ///< `lags_by_turn`: the tip lag differs on the edge and across the broad side
+    bool across = false;  ///< `is_bent_across`: lean and tip lag are across the broad side; false: along the path
+    bool turned = false;  ///< `has_lag_by_turn`: the tip lag differs on the edge and across the broad side
     std::shared_ptr<Drapes> drapes = {};  ///< lines that strokes of one placement share; empty: each walks its own
 };
 
@@ -116,11 +116,11 @@ double working_depth(const brush::Preset& preset);
 /// Whether hair of this brush bends across the broad side only, whichever way the path goes: of a wide ferrule whose
 /// make leans, such as a fan, but for a blade, which leans along its broad side. Along that a fan's hair has no steady
 /// place.
-bool bends_across(const brush::Preset& preset);
+bool is_bent_across(const brush::Preset& preset);
 
 /// Whether the tip lag of this brush differs by how its broad side lies to the path: of a wide ferrule that does not
 /// bend across alone. A blade, which is led along its broad side, has one tip lag.
-bool lags_by_turn(const brush::Preset& preset);
+bool has_lag_by_turn(const brush::Preset& preset);
 
 /// Returns options for a brush over a model, `steady` its `drape_radius`, without tip lag.
 HolderOptions holder_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh);

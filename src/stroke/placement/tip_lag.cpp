@@ -134,11 +134,11 @@ Vec2 TiltedTipLag::change_by_turn(double depth, double turn) {
 
 Vec2 TiltedTipLag::at(double depth, const Vec2& lean, double turn) {
     if (depth <= 0) return Vec2{0};
-    if (const Vec2 held{preset_.lean, 0}; bends_across(preset_)) {
+    if (const Vec2 held{preset_.lean, 0}; is_bent_across(preset_)) {
         const bool is_held = glm::distance(lean, held) < kOnGrid;
         return is_held ? Vec2{0} : of_lean(depth, lean, kBroad) - of_lean(depth, held, kBroad);
     }
-    if (!lags_by_turn(preset_)) return change_by_lean(depth, lean, kEdge);
+    if (!has_lag_by_turn(preset_)) return change_by_lean(depth, lean, kEdge);
     // Turned to the other side is the mirror image.
     const double folded = std::remainder(turn, std::numbers::pi), side = folded < 0 ? -1 : 1;
     const double degrees = glm::degrees(std::abs(folded)), broad = smooth_step((degrees - kTurns[1]) / 35);
@@ -151,7 +151,7 @@ Vec2 TiltedTipLag::at(double depth, const Vec2& lean, double turn) {
 
 std::vector<TipLag> TiltedTipLag::measure_as_held() {
     std::vector<TipLag> held{{0, 0}};
-    if (bends_across(preset_)) {
+    if (is_bent_across(preset_)) {
         for (const double part : kDepths) {
             const double depth = part * working_depth(preset_);
             held.push_back({depth, of_lean(depth, {preset_.lean, 0}, kBroad).x});
@@ -159,9 +159,10 @@ std::vector<TipLag> TiltedTipLag::measure_as_held() {
         return held;
     }
     std::vector<double> depths;
+    depths.reserve(kHeldDepths.size());
     for (const double part : kHeldDepths) depths.push_back(part * working_depth(preset_));
     // An edge is set down with its middle on the path.
-    const auto half = lags_by_turn(preset_) ? &brush::SweepRow::drag : &brush::SweepRow::width;
+    const auto half = has_lag_by_turn(preset_) ? &brush::SweepRow::drag : &brush::SweepRow::width;
     for (const brush::SweepRow& row : brush::sweep_depth(preset_, depths))
         held.push_back({row.depth, std::max(0.0, row.offset + 0.5 * row.*half)});
     return held;
@@ -169,7 +170,7 @@ std::vector<TipLag> TiltedTipLag::measure_as_held() {
 
 const std::vector<TipLag>& TiltedTipLag::as_held() {
     std::call_once(measured_, [&] {
-        const std::size_t n = 1 + (bends_across(preset_) ? kDepths.size() : kHeldDepths.size());
+        const std::size_t n = 1 + (is_bent_across(preset_) ? kDepths.size() : kHeldDepths.size());
         as_held_ = read_or_measure<TipLag>("as held", {}, n, [&] { return measure_as_held(); });
     });
     return as_held_;
@@ -363,7 +364,7 @@ bool is_dot(std::span<const StrokeSample> samples, const HolderOptions& options)
 }
 
 /// Direction in which a hand sets out.
-Vec2 sets_out(std::span<const StrokeSample> samples, const HolderOptions& options) {
+Vec2 initial_direction(std::span<const StrokeSample> samples, const HolderOptions& options) {
     const Vec2 ahead = trace_direction(samples, options);
     return ahead != Vec2(0) ? ahead : dot_direction(samples.front(), options);
 }
@@ -375,7 +376,7 @@ StrokeSamples lean_holder(StrokeSamples trace, const HolderOptions& options) {
     if (std::ranges::any_of(trace.samples, [](const StrokeSample& s) { return s.tilt != Vec2(0); })) return trace;
     const double string = lean_string(options);
     Vec2 before(trace.samples.front().position);
-    Vec2 dragged = before - string * sets_out(trace.samples, options);
+    Vec2 dragged = before - string * initial_direction(trace.samples, options);
     for (StrokeSample& s : trace.samples) {
         const Vec2 p(s.position);
         dragged = drag_string(dragged, before, p, string);
@@ -389,7 +390,7 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     if (options.tip_lag.empty() || trace.samples.empty() || !trace.flat) return trace;
     // The hand knows where it is going to start: the string is taut from the first touch.
     const Vec2 first(trace.samples.front().position);
-    const Vec2 ahead = sets_out(trace.samples, options);
+    const Vec2 ahead = initial_direction(trace.samples, options);
     const bool dot = is_dot(trace.samples, options);
     const Vec2 off = dot && options.dot_place ? options.dot_place(trace) : Vec2{0};
     const bool pressed = set_down(trace, options, ahead, dot);

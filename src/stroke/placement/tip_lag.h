@@ -21,11 +21,11 @@
 /// compensated in the hand's samples. Called by `Materials` and `hand_path`.
 namespace tuft::stroke {
 
-/// Change of a brush's tip lag by a lean of the holder and, of a brush that `lags_by_turn`, by the turn of its broad
+/// Change of a brush's tip lag by a lean of the holder and, of a brush that `has_lag_by_turn`, by the turn of its broad
 /// side from the path, measured on steady strokes at a grid of leans, turns and depths. A node of the grid is measured
 /// at its first use: 25 ms, of a flat 0.5 s, of a fan 1.5 s of computing, its depths side by side. Leans up to 0.05 rad
 /// change nothing, as a hand does not hold a brush more upright; from 0.15 rad on the change is full. Of a brush that
-/// `bends_across` every lean counts, from that of its make. Nodes in the cache are those that the same sources
+/// `is_bent_across` every lean counts, from that of its make. Nodes in the cache are those that the same sources
 /// measured of the same preset: the values are the same to the bit. Thread-safe.
 ///
 /// An upright flat on its edge keeps its hair under it; turned by 20 degrees or more it lies down on its broad side and
@@ -46,9 +46,10 @@ class TiltedTipLag {
     /// anticlockwise; both faces are alike.
     Vec2 at(double depth, const Vec2& lean, double turn = 0);
     /// Returns the tip lag that `at` is the change from: upright, the broad side along the path; of a brush that
-    /// `bends_across`, leaning as its make does, the broad side across. By depths up to the working depth: the distance
-    /// from the foot of the holder's axis back to the widest place of the steady contact patch, which lies half a
-    /// line's width behind its end (`brush::sweep_depth`). Measured at the first call: about 50 ms; of a fan 1.5 s.
+    /// `is_bent_across`, leaning as its make does, the broad side across. By depths up to the working depth: the
+    /// distance from the foot of the holder's axis back to the widest place of the steady contact patch, which lies
+    /// half a line's width behind its end (`brush::sweep_depth`). Measured at the first call: about 50 ms; of a fan 1.5
+    /// s.
     const std::vector<TipLag>& as_held();
 
   private:
@@ -139,8 +140,8 @@ inline constexpr double kHoverTime = 0.05;  ///< seconds of the tip between the 
 ///
 ///     |v_holder| ≤ (1 + tip_lag / tip_lag_turn + 2 κ L + 1.5) |v_path| + 4 (|depth'| + L |tilt'| + L |roll'|),
 ///
-/// with L the tuft's length; of a brush that `lags_by_turn` 6 |v_path| more, as its hair falls over within L / 2. Above
-/// the surface it is at most `hover / kHoverTime` faster than the hand.
+/// with L the tuft's length; of a brush that `has_lag_by_turn` 6 |v_path| more, as its hair falls over within L / 2.
+/// Above the surface it is at most `hover / kHoverTime` faster than the hand.
 StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& options);
 
 /// Adds samples after a trace that ends with pressure 0, in which the tip rises to `hover`. Other traces do not change.
