@@ -198,11 +198,53 @@ std::optional<Bent> step_at_rest(const Step& w, brush::Tuft& tuft, double dt, co
     return bent;
 }
 
+/// Radii of the nodes of a tuft: the trunk's, and one for those of all branches beyond.
+struct NodeRadii {
+    std::span<const double> trunk;
+    double root = 0;  ///< metres
+
+    double at(std::size_t i) const { return i < trunk.size() ? trunk[i] : root; }
+};
+
+/// How far the planes of a solve are off where its nodes came to rest.
+struct PlaneErrors {
+    double worst = 0;            ///< metres
+    Recycled<std::size_t> near;  ///< nodes near the surface, from the root
+};
+
+PlaneErrors find_plane_errors(const Recycled<NodeWalls>& walls, const Recycled<NodeContact>& found,
+                              std::span<const Vec3> nodes, const NodeRadii& radii) {
+    PlaneErrors errors;
+    errors.near.reserve(walls.size());
+    for (std::size_t i = walls.size(); i-- > 0;) {
+        const double z = walls[i].height(nodes[i]);
+        const double height = brush::height_over(found[i].wedge, nodes[i]);
+        if (std::min(z, height) > 2 * radii.at(i)) continue;
+        errors.worst = std::max(errors.worst, std::abs(z - height));
+        errors.near.push_back(i);
+    }
+    return errors;
+}
+
+/// Gives the nodes of `near` the walls that were found where they came to rest, from the root, which the walls of the
+/// next ones agree with.
+void renew_walls(Recycled<NodeWalls>& walls, const Recycled<std::size_t>& near, const Recycled<NodeContact>& found,
+                 std::span<const Vec3> nodes, const NodeRadii& radii, const Recycled<std::size_t>& lengths) {
+    const Recycled<NodeWalls> before = walls;
+    for (const std::size_t i : near) {
+        const NodeWalls* inboard = is_root(lengths, i) ? nullptr : &walls[i + 1];
+        const NodeWalls& old = before[i];
+        walls[i] = i < radii.trunk.size() ? update_walls(old, found[i], nodes[i], radii.trunk[i], inboard)
+                                          : NodeWalls{found[i], {}};
+        if (!walls[i].in_groove()) walls[i].own.wedge = refresh_plane(old.own.wedge, found[i], nodes[i], radii.at(i));
+    }
+}
+
 /// Solves, looks where the nodes came to rest, and solves again where their planes were off.
 Bent solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memory) {
     const Recycled<double> radii = node_radii(tuft);
     const Recycled<std::size_t> lengths = spine_lengths(tuft);
-    const double root_radius = radii[tuft.trunk().rest_radius.size() - 1];
+    const NodeRadii node_radius{radii, radii[tuft.trunk().rest_radius.size() - 1]};
     const bool was_split = tuft.split;
     const Recycled<Vec3>& nodes = w.nodes;
     Rest& rest = memory.rest;
@@ -231,32 +273,15 @@ Bent solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memory) {
         const auto compared = std::span(now).first(nodes.size());
         const Recycled<NodeContact> found =
             find_tuft_contacts(w, before, compared, {predicted, nodes, 0.5 * w.options.refresh_error});
-        const auto radius_of = [&](std::size_t i) { return i < radii.size() ? radii[i] : root_radius; };
-        double worst = 0;
-        Recycled<std::size_t> near;
-        near.reserve(walls.size());
-        for (std::size_t i = walls.size(); i-- > 0;) {
-            const double z = walls[i].height(compared[i]);
-            const double height = brush::height_over(found[i].wedge, compared[i]);
-            if (std::min(z, height) > 2 * radius_of(i)) continue;
-            worst = std::max(worst, std::abs(z - height));
-            near.push_back(i);
-        }
-        if (worst < w.options.refresh_error) {
+        const PlaneErrors errors = find_plane_errors(walls, found, compared, node_radius);
+        if (errors.worst < w.options.refresh_error) {
             contacts = found;
             contacts.resize(radii.size());
             rest.verified = true;
             break;
         }
         Recycled<NodeWalls> walls_before = walls;
-        for (const std::size_t i : near) {  // from the root, which the walls of the next ones agree with
-            const NodeWalls* inboard = is_root(lengths, i) ? nullptr : &walls[i + 1];
-            const NodeWalls& old = walls_before[i];
-            walls[i] = i < radii.size() ? update_walls(old, found[i], compared[i], radii[i], inboard)
-                                        : NodeWalls{found[i], {}};
-            if (!walls[i].in_groove())
-                walls[i].own.wedge = refresh_plane(old.own.wedge, found[i], compared[i], radius_of(i));
-        }
+        renew_walls(walls, errors.near, found, compared, node_radius, lengths);
         StepPlanes met_before = std::move(met);
         met = StepPlanes(walls, radii.size(), beside);
         Recycled<Vec3> nodes_before = std::move(now);

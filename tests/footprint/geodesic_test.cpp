@@ -42,7 +42,7 @@ struct Model {
         graph = atlas::build_cluster_graph(mesh, atlas, map);
     }
     StampJobs plan(const Footprint& f) {
-        StampJobs jobs = plan_stamp({mesh, atlas, map, graph}, f, {}, {}, scratch);
+        StampJobs jobs = plan_stamp({mesh, atlas, map, graph}, f, {}, {}, {scratch});
         choose_mode(jobs, false, {});
         return jobs;
     }

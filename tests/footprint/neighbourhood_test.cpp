@@ -65,7 +65,7 @@ TEST(Neighbourhood, StampsOfABatchExposeWhatEachOfThemExposesByItself) {
                 const Exposures truth = exposures_of(stage, alone);
                 PlanScratch fresh;  // a stamp that takes its clusters from there needs no search before it
                 const StampJobs shared =
-                    plan_stamp(stage.surface(), stamp.footprint, stamp.motion, {}, fresh, {}, around);
+                    plan_stamp(stage.surface(), stamp.footprint, stamp.motion, {}, {fresh}, around);
                 ASSERT_GT(truth.size(), 9u);
                 EXPECT_EQ(exposures_of(stage, shared), truth) << ball << " " << turn;
                 EXPECT_TRUE(fresh.nodes.empty());

@@ -63,7 +63,7 @@ struct Stage {
     }
 
     StampJobs plan(const Footprint& f, const Motion& motion = {}, const StampOptions& options = {}) {
-        StampJobs jobs = plan_stamp(surface(), f, motion, options, scratch);
+        StampJobs jobs = plan_stamp(surface(), f, motion, options, {scratch});
         choose_mode(jobs, false, options);
         return jobs;
     }

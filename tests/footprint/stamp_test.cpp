@@ -229,7 +229,7 @@ TEST(Stamp, SameBitsForAllInstructionSetsAndThreadCounts) {
                 for (std::size_t i = begin; i < end; ++i) {
                     const StampOptions options{.isa = isa};
                     const Motion motion = i % 3 == 0 ? Motion{Vec2{3e-3, -1e-3}, 0} : Motion{Vec2{2e-4, -1e-4}, 0.05};
-                    StampJobs jobs = plan_stamp(stage.surface(), prints[i], motion, options, scratch);
+                    StampJobs jobs = plan_stamp(stage.surface(), prints[i], motion, options, {scratch});
                     choose_mode(jobs, i % 2 == 0, options);
                     std::array<float, atlas::kTileTexels> exposure;
                     for (const TileJob& job : jobs.tiles) {

@@ -161,7 +161,7 @@ double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps
         bool piecewise = false;
         const double start = thread_cpu_seconds();
         for (const footprint::Footprint& f : path) {
-            jobs = footprint::plan_stamp(surface, f, {}, options, scratch, std::move(jobs));
+            jobs = footprint::plan_stamp(surface, f, {}, options, {scratch, std::move(jobs)});
             piecewise = footprint::choose_mode(jobs, piecewise, options);
             const ink::DepositLaw law = ink::deposit_law(params, model.atlas.texel_size);
             for (const footprint::TileJob& job : jobs.tiles) {

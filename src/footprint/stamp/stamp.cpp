@@ -194,9 +194,9 @@ void classify_clusters(const Surface& surface, const Footprint& footprint, const
 }  // namespace
 
 StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const Motion& motion,
-                     const StampOptions& options, PlanScratch& scratch, StampJobs recycled,
-                     const Neighbourhood& around) {
-    StampJobs jobs = std::move(recycled);
+                     const StampOptions& options, PlanMemory memory, const Neighbourhood& around) {
+    PlanScratch& scratch = memory.scratch;
+    StampJobs jobs = std::move(memory.recycled);
     jobs.frames.clear();
     jobs.tiles.clear();
     jobs.sub_poses.clear();

@@ -184,13 +184,18 @@ struct Unpacked {
     atlas::TexelShape shape;     ///< its texels
 };
 
+/// What plans of stamps use again.
+struct PlanMemory {
+    PlanScratch& scratch;
+    StampJobs recycled = {};  ///< lends the memory of an earlier stamp; its contents are ignored
+};
+
 /// Plans a stamp: finds the clusters within the footprint that are connected to the contact point and do not face
 /// away from it, and their positions in the picture. Cost is proportional to the footprint's area in texels and
-/// does not depend on the mesh. `recycled` lends the memory of an earlier stamp; its contents are ignored. `around`: of
-/// stamps of which this is one, found with the same options; empty: the stamp searches by itself.
+/// does not depend on the mesh. `around`: of stamps of which this is one, found with the same options; empty: the stamp
+/// searches by itself.
 StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const Motion& motion,
-                     const StampOptions& options, PlanScratch& scratch, StampJobs recycled = {},
-                     const Neighbourhood& around = {});
+                     const StampOptions& options, PlanMemory memory, const Neighbourhood& around = {});
 
 /// Chooses one frame for all clusters or one for each, with hysteresis. `piecewise_before` is the mode of the
 /// previous stamp of the stroke (false for the first). Returns the mode.

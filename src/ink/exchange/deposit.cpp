@@ -201,16 +201,16 @@ void TileDeposit::add(std::span<const float, kN> coverage, const DepositParams& 
         return even;
     }();
     const float* tone = (tone_.empty() ? std::span<const float>(kEven) : tone_).data() + begin;
+    const Covered rows{begin, end, &coverage[begin], tone};
     const auto planes = canvas_.open_planes(slot_);
     const int only = only_pigment(params.mix);
     if (only >= 0 && planes[only] != nullptr && std::count(planes.begin(), planes.end(), nullptr) == kMaxPigments - 1)
-        add_alone(only, begin, end, &coverage[begin], tone, params, law);
+        add_alone(only, rows, params, law);
     else
-        add_among_others(begin, end, &coverage[begin], tone, params, law);
+        add_among_others(rows, params, law);
 }
 
-void TileDeposit::add_alone(int pigment, int begin, int end, const float* coverage, const float* tone,
-                            const DepositParams& params, const DepositLaw& law) {
+void TileDeposit::add_alone(int pigment, const Covered& rows, const DepositParams& params, const DepositLaw& law) {
     if (!(params.target > 0) || !(law.rate > 0)) return;
     Plane& plane = *canvas_.open_planes(slot_)[pigment];
     if (alone_ != pigment || alone_part_ != params.mix[pigment]) {
@@ -220,7 +220,7 @@ void TileDeposit::add_alone(int pigment, int begin, int end, const float* covera
         before_ = plane;
     }
     const Alone alone{params.target, law.hidden, law.inverse_extinction, params.capacity, law.rate, alone_part_};
-    if (!deposit_alone(plane.data() + begin, coverage, tone, alone, end - begin)) return;
+    if (!deposit_alone(plane.data() + rows.begin, rows.coverage, rows.tone, alone, rows.end - rows.begin)) return;
     changed_ = true;
     canvas_.mark_dirty(slot_);
 }
@@ -238,8 +238,8 @@ double TileDeposit::finish() {
     return given_;
 }
 
-void TileDeposit::add_among_others(int begin, int end, const float* coverage, const float* tone,
-                                   const DepositParams& params, const DepositLaw& law) {
+void TileDeposit::add_among_others(const Covered& rows, const DepositParams& params, const DepositLaw& law) {
+    const auto [begin, end, coverage, tone] = rows;
     sum_alone();
     const int n = end - begin;
     const auto planes = canvas_.open_planes(slot_);

@@ -25,10 +25,14 @@ class TileDeposit {
     double finish();
 
   private:
-    void add_alone(int pigment, int begin, int end, const float* coverage, const float* tone,
-                   const DepositParams& params, const DepositLaw& law);
-    void add_among_others(int begin, int end, const float* coverage, const float* tone, const DepositParams& params,
-                          const DepositLaw& law);
+    /// The rows of the tile that a stamp covers: texels `begin` to `end`.
+    struct Covered {
+        int begin = 0, end = 0;
+        const float *coverage = nullptr, *tone = nullptr;  ///< [end − begin]
+    };
+
+    void add_alone(int pigment, const Covered& rows, const DepositParams& params, const DepositLaw& law);
+    void add_among_others(const Covered& rows, const DepositParams& params, const DepositLaw& law);
     void sum_alone();
 
     Canvas& canvas_;

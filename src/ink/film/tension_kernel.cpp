@@ -151,9 +151,16 @@ TUFT_INLINE float most_of(const Work& o, const Geometry& g, int k, int l) {
     return (kMostOfTexel * kFlowAreaUnit) * static_cast<float>(a < b ? a : b) * smaller(o.w[k], o.w[l]);
 }
 
-/// Sixteen faces from texels k to k + `to`, into `through`.
-TUFT_INLINE void faces(Work& o, Faces& f, const Geometry& g, const float* p, const float* mobility, int k, int first,
-                       int second, float share) {
+/// Sixteen faces in a row, the first of which lies between texels k + `first` and k + `second`.
+struct FaceRow {
+    const float* mobility;  ///< [16]
+    int k = 0, first = 0, second = 0;
+    float share = 1;  ///< of a texel's liquid that may go through a face
+};
+
+/// Flows through a row of faces under the pressures p, into `through`.
+TUFT_INLINE void faces(Work& o, Faces& f, const Geometry& g, const float* p, const FaceRow& row) {
+    const auto [mobility, k, first, second, share] = row;
     float *a = &f.a[k], *b = &f.b[k], *through = &o.through[k];
 #pragma GCC ivdep
     for (int x = 0; x < kSide; ++x) {
@@ -188,7 +195,7 @@ TUFT_CLONES void flow_by_tension(Work& o, const Geometry& g, const Grid<16>& t, 
     const float* p = t.p.data();
     alignas(64) float first[kSide] = {};
     for (int row = 0; row < kSide; ++row) {
-        faces(o, o.x, g, p, &t.mx[static_cast<std::size_t>(row * (kSide + 1) + 1)], field_at(0, row), 0, 1, 1);
+        faces(o, o.x, g, p, {&t.mx[static_cast<std::size_t>(row * (kSide + 1) + 1)], field_at(0, row), 0, 1, 1});
         first[0] = t.mx[static_cast<std::size_t>(row * (kSide + 1))];
         const int k = field_at(-1, row);
         const Carried c = carried(first[0], p[k], p[k + 1], most_of(o, g, k, k + 1), o.rate[k], o.rate[k + 1]);
@@ -198,7 +205,7 @@ TUFT_CLONES void flow_by_tension(Work& o, const Geometry& g, const Grid<16>& t, 
     }
     add_flow(o, -1, 0);
     for (int row = -1; row < kSide; ++row)
-        faces(o, o.y, g, p, &t.my[static_cast<std::size_t>((row + 1) * kSide)], field_at(0, row), 0, kRow, 1);
+        faces(o, o.y, g, p, {&t.my[static_cast<std::size_t>((row + 1) * kSide)], field_at(0, row), 0, kRow, 1});
     add_flow(o, -kRow, 0);
     if (!g.gd) return;
     const auto diagonals = [&](Faces & f, const std::array<float, (kSide + 1) * (kSide + 1)>& mobility, int from,
@@ -206,7 +213,7 @@ TUFT_CLONES void flow_by_tension(Work& o, const Geometry& g, const Grid<16>& t, 
         for (int row = -1; row < kSide; ++row) {
             const float* m = &mobility[static_cast<std::size_t>((row + 1) * (kSide + 1))];
             const int k = field_at(-1, row);
-            faces(o, f, g, p, m + 1, k + 1, from, to, 0.5f);
+            faces(o, f, g, p, {m + 1, k + 1, from, to, 0.5f});
             const Carried c = carried(m[0], p[k + from], p[k + to], 0.5f * most_of(o, g, k + from, k + to),
                                       o.rate[k + from], o.rate[k + to]);
             f.a[k] = c.a;

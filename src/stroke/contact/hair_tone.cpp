@@ -35,12 +35,18 @@ Recycled<double> loads_of(const ink::Reservoir& reservoir, const brush::Bundles&
     return loads;
 }
 
-/// Adds the hat of height w and half width `reach` about `centre`, and it times `value`, to the samples from `first` to
-/// `last`.
-TUFT_CLONES void add_hat(double* __restrict weight, double* __restrict load, int first, int last, double centre,
-                         double reach, double w, double value) {
+/// A hat over the samples, and what it weighs.
+struct WeightedHat {
+    double centre = 0, reach = 1;  ///< samples; `reach`: half width
+    double height = 0, value = 0;
+};
+
+/// Adds a hat, and it times its value, to the samples from `first` to `last`.
+TUFT_CLONES void add_hat(double* __restrict weight, double* __restrict load, int first, int last,
+                         const WeightedHat& of) {
+    const auto [centre, reach, height, value] = of;
     for (int i = first; i <= last; ++i) {
-        const double hat = w * (1 - std::abs(i - centre) / reach);
+        const double hat = height * (1 - std::abs(i - centre) / reach);
         weight[i] += hat;
         load[i] += hat * value;
     }
@@ -53,7 +59,7 @@ struct Sums {
     void add(double centre, double reach, double w, double value) {
         const int first = std::max(0, static_cast<int>(std::ceil(centre - reach))),
                   last = std::min(ink::kToneSamples - 1, static_cast<int>(std::floor(centre + reach)));
-        add_hat(weight.data(), load.data(), first, last, centre, reach, w, value);
+        add_hat(weight.data(), load.data(), first, last, {centre, reach, w, value});
     }
 };
 

@@ -40,7 +40,7 @@ void StampBatch::plan() {
         for (std::size_t i = begin; i < end; ++i)
             plans_[i] =
                 footprint::plan_stamp(surface, batch_[i].footprint, moved_[i].motion,
-                                      stamp_options(options_, batch_[i]), scratch, std::move(plans_[i]), around_);
+                                      stamp_options(options_, batch_[i]), {scratch, std::move(plans_[i])}, around_);
     };
     parallel_for(batch_.size(), 2, std::ref(plan_some));  // by reference: a loop allocates nothing
 }

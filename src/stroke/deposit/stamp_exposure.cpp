@@ -52,7 +52,7 @@ ink::NodeAreas StampExposure::expose(const Stamp& stamp) {
         PlanScratchPool::Lease scratch(target_.scratch());
         plan_ = footprint::plan_stamp(target_.model().surface(), stamp.footprint,
                                       joined_motion(stamp, target_.texels().texel_size), stamp_options(options_, stamp),
-                                      scratch, std::move(plan_));
+                                      {scratch, std::move(plan_)});
     }
     tiles_.resize(plan_.tiles.size());
     if (plan_.empty()) return {};

@@ -112,11 +112,19 @@ struct Reach {
     double too_short() const { return ink > wanted ? kNeedleBack * (wanted - ink) : 1e9; }
 };
 
-/// Compares the ink of a try with the target. `coverage`: that of the target's cells; `sides`: stations whose
-/// directions part left and right.
+/// What a try drew.
+struct TriedInk {
+    const stroke::StrokeSamples& trace;
+    const stroke::PlaneInk& ink;
+    const std::vector<float>& coverage;  ///< of the target's cells
+    double unit = 1;                     ///< metres, of the stations
+};
+
+/// Compares the ink of a try with the target. `sides`: stations whose directions part left and right.
 Errors errors_of(const std::vector<Station>& s, const std::vector<Station>& sides, const FitTarget& target,
-                 const std::vector<float>& coverage, const stroke::PlaneInk& ink, const stroke::StrokeSamples& trace,
-                 double unit) {
+                 const TriedInk& tried) {
+    const stroke::StrokeSamples& trace = tried.trace;
+    const std::vector<float>& coverage = tried.coverage;
     const Cells& cells = target.wanted;
     const std::size_t n = s.size();
     const std::vector<double> along = lengths_of(s);
@@ -129,7 +137,7 @@ Errors errors_of(const std::vector<Station>& s, const std::vector<Station>& side
     const Vec2 out_head = -direction_at(sides, 0), out_tail = direction_at(sides, n - 1);
     // The station at whose time ink first covered a place.
     const auto station_of = [&](const Vec2& p) {
-        const double when = ink.when(p * unit);
+        const double when = tried.ink.when(p * tried.unit);
         const auto later = std::lower_bound(trace.samples.begin(), trace.samples.end(), when,
                                             [](const stroke::StrokeSample& a, double time) { return a.time < time; });
         const auto index = static_cast<std::size_t>(later - trace.samples.begin());
@@ -245,7 +253,8 @@ FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& ta
     const auto judged = [&](const stroke::StrokeSamples& trace, const stroke::PlaneInk& ink,
                             const std::vector<Station>& next, const std::vector<Station>& sides) {
         const std::vector<float> coverage = coverage_by(ink, target.wanted);
-        return Try{score_of(target, depths, coverage), errors_of(next, sides, target, coverage, ink, trace, hand.unit)};
+        return Try{score_of(target, depths, coverage),
+                   errors_of(next, sides, target, {trace, ink, coverage, hand.unit})};
     };
     const double cell = target.wanted.cell * hand.unit;
     stroke::PlaneDrawing coarse(hand.preset, hand.hold, options.step * hand.unit, cell);
