@@ -206,7 +206,7 @@ class LetteringOnModel : public BothPrograms {
 TEST_F(LetteringOnModel, InLinesOnTheBowlItIsTheSame) {
     Lettering l = lettering("\xe6\x98\xa5\n\xe9\xa2\xa8", 0.0201234, writer::Direction::horizontal);
     l.turn = 0.3;
-    l.line_spacing = 1.1;
+    l.spacing.lines = 1.1;
     lay_out(l);
     const Painted studio = by_studio("bowl.ply", l, {0.004, -1, 0.03}, {0, 1, 0});
     expect_as_by_program("bowl.ply", studio);

@@ -37,10 +37,20 @@ class MixFinder {
 
 enum class ColourSliders { rgb, hsv, lab };
 
+/// The wheel of the colour window in the last frame, pixels.
+struct ColourWheelSize {
+    float height = 0, room = 1e4f;  ///< of the wheel; free for it in the view
+};
+
+/// What is typed into the colour window.
+struct TypedColour {
+    std::string hex = "#c03020", name;
+};
+
 /// State of the colour window.
 struct ColourChoice {
-    bool shown = false;                                   ///< the window is open
-    float wheel_height = 0, room_for_wheel = 1e4f;        ///< pixels, of its wheel in the last frame
+    bool shown = false;  ///< the window is open
+    ColourWheelSize wheel;
     std::array<float, 3> wanted{0.753f, 0.188f, 0.125f};  ///< sRGB, 0–1
     ColourSliders sliders = ColourSliders::hsv;
     std::array<float, 3> hsv{0.017f, 0.833f, 0.753f};  ///< keeps the hue of greys
@@ -51,9 +61,9 @@ struct ColourChoice {
     bool take = false;                      ///< the next match goes into the brush
     std::optional<ink::Ink> in_hand;        ///< chosen, not yet part of the project
     bool taken = false;                     ///< being added to the project
-    std::string hex = "#c03020", name;      ///< as typed
-    std::vector<std::string> recent;        ///< painted with, `#rrggbb`, newest first
-    std::vector<ink::Ink> saved;            ///< the user's own, for all projects
+    TypedColour typed;
+    std::vector<std::string> recent;  ///< painted with, `#rrggbb`, newest first
+    std::vector<ink::Ink> saved;      ///< the user's own, for all projects
 };
 
 /// Returns the key of a pigment's title in the catalogues: "iron-red" of "iron red".

@@ -121,8 +121,8 @@ void lay_out(Lettering& l) {
     const writer::Style& style = l.text->style;
     l.text->layout = {.direction = l.direction,
                       .side = kMillimetre * rounded(l.side / kMillimetre),
-                      .spacing = l.spacing > 0 ? rounded(l.spacing) : style.spacing,
-                      .line_spacing = l.line_spacing > 0 ? rounded(l.line_spacing) : style.line_spacing};
+                      .spacing = l.spacing.characters > 0 ? rounded(l.spacing.characters) : style.spacing,
+                      .line_spacing = l.spacing.lines > 0 ? rounded(l.spacing.lines) : style.line_spacing};
 }
 
 LetteringReader::Read LetteringReader::read(const writer::TextRequest& request) {
@@ -212,8 +212,8 @@ std::string place_words(const Lettering& l, const LetteringPlace& place, const s
     words += fmt::format(" --style {} --size {:.3f} --direction {}", wanted.style, l.side / kMillimetre,
                          writer::name_of(l.direction));
     if (!wanted.glyphs.empty()) words += " --glyphs " + quoted(wanted.glyphs.string());
-    if (l.spacing > 0) words += fmt::format(" --spacing {:.3f}", l.spacing);
-    if (l.line_spacing > 0) words += fmt::format(" --line-spacing {:.3f}", l.line_spacing);
+    if (l.spacing.characters > 0) words += fmt::format(" --spacing {:.3f}", l.spacing.characters);
+    if (l.spacing.lines > 0) words += fmt::format(" --line-spacing {:.3f}", l.spacing.lines);
     if (!l.style_brush) words += " --brush " + quoted(brush);
     if (l.fit) words += " --fit";
     if (const auto* placement = std::get_if<stroke::Placement>(&place)) return words + " " + place_words(*placement);

@@ -16,20 +16,25 @@
 /// A text before it is written on the model. Called by tools/lettering_tool.h. Window thread.
 namespace tuft::app {
 
+/// Spacing of a text; 0: the style's.
+struct TextSpacing {
+    double characters = 0, lines = 0;  ///< sides of a character, as `writer` has them
+};
+
 /// A text, how it is written, and how the user places it.
 struct Lettering {
     writer::TextRequest wanted;
     int setting = 0;  ///< number of times that the text was set elsewhere than in its field
     writer::Direction direction = writer::Direction::horizontal;
-    double side = 0;                       ///< metres, of a character's square; 0: chosen by the model (`usual_side`)
-    double spacing = 0, line_spacing = 0;  ///< 0: the style's
-    double turn = 0;                       ///< radians, clockwise in the view; of lines and columns
-    bool style_brush = true;               ///< the style's brush in the size that suits; false: the chosen brush
-    bool fit = false;                      ///< to the outlines of the source
-    CopyInWork copy;                       ///< of the picture `wanted.like`
-    bool reread = false;                   ///< the picture is to be read, also where nothing else is wanted
-    std::vector<KeptCopy> kept;            ///< of the project
-    std::vector<CurvePoint> curve;         ///< of the curve tool when it was left last; the text runs along it
+    double side = 0;  ///< metres, of a character's square; 0: chosen by the model (`usual_side`)
+    TextSpacing spacing;
+    double turn = 0;                ///< radians, clockwise in the view; of lines and columns
+    bool style_brush = true;        ///< the style's brush in the size that suits; false: the chosen brush
+    bool fit = false;               ///< to the outlines of the source
+    CopyInWork copy;                ///< of the picture `wanted.like`
+    bool reread = false;            ///< the picture is to be read, also where nothing else is wanted
+    std::vector<KeptCopy> kept;     ///< of the project
+    std::vector<CurvePoint> curve;  ///< of the curve tool when it was left last; the text runs along it
 
     std::optional<writer::Text> text;  ///< as it was read; nothing: there is nothing to write
     Message fault;                     ///< why there is none; empty: no text is typed

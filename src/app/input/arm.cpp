@@ -126,7 +126,7 @@ void Arm::feel(const ArmScene& scene) {
         *device_, haptic::HairSolver(brush::make_tuft(scene_.brush), *scene_.surface), options);
     loop_->set_control({.workspace = workspace_});
     cutter_ = {};
-    dropped_ = carried_ = held_known_ = false;
+    dropped_ = hold_.carried = hold_.known = false;
     silent_ = 0;
     loop_->start();
 }
@@ -179,24 +179,24 @@ void Arm::drop_stroke() {
 
 void Arm::set_workspace(const Vec3& about, const Quat& axes, bool moves) {
     if (!moves) {
-        held_known_ = carried_ = false;
+        hold_.known = hold_.carried = false;
         workspace_.rotation = axes;
         return;
     }
     // From the first frame on the space keeps its place in the view.
-    if (!held_known_) {
+    if (!hold_.known) {
         workspace_.rotation = axes;
-        held_ = glm::conjugate(axes) * (workspace_.offset - about);
-        held_known_ = true;
+        hold_.offset = glm::conjugate(axes) * (workspace_.offset - about);
+        hold_.known = true;
     }
     workspace_.rotation = axes;
-    workspace_.offset = about + axes * held_;
-    carried_ = true;
+    workspace_.offset = about + axes * hold_.offset;
+    hold_.carried = true;
 }
 
 void Arm::set_control(haptic::ServoControl control) {
     control.workspace = workspace_;
-    control.carried = carried_;
+    control.carried = hold_.carried;
     if (loop_) loop_->set_control(control);
 }
 

@@ -104,6 +104,12 @@ class Arm {
 
   private:
     struct PointerHand;
+    /// Where the workspace stays while its axes turn.
+    struct WorkspaceHold {
+        Vec3 offset{0};        ///< m, of the workspace from the point that it turns about, in its axes
+        bool known = false;    ///< `offset` is
+        bool carried = false;  ///< the workspace was moved for it
+    };
 
     void place(const ArmScene& scene);
     void open_simulated();
@@ -119,9 +125,9 @@ class Arm {
     haptic::DeviceState first_;
     haptic::Workspace workspace_;
     ArmScene scene_;
-    Vec3 held_{0};    // m, offset of the workspace from the point that it turns about, in its axes
+    WorkspaceHold hold_;
     int silent_ = 0;  // looks in a row at a loop that is not engaged
-    bool known_ = false, carried_ = false, dropped_ = false, held_known_ = false, paints_ = true;
+    bool known_ = false, dropped_ = false, paints_ = true;
 };
 
 }  // namespace tuft::app

@@ -30,7 +30,7 @@ unsigned packed(const ink::Rgb& linear) {
 // A colour was chosen; with `take` the mix found for it goes into the brush.
 void wish(Session& s, bool take) {
     ColourChoice& c = s.colours.choice;
-    c.hex = ink::to_hex(linear_of(c.wanted));
+    c.typed.hex = ink::to_hex(linear_of(c.wanted));
     c.take = take;
     c.finder.request({.colour = linear_of(c.wanted),
                       .substrate = s.colours.appearance.painted_on,
@@ -50,7 +50,7 @@ void keep_hsv(ColourChoice& c) {
 void wheel(Session& s) {
     ColourChoice& c = s.colours.choice;
     // As large as what is below leaves room for.
-    const float all = ImGui::GetContentRegionAvail().x, side = std::clamp(c.room_for_wheel, 0.4f * all, all);
+    const float all = ImGui::GetContentRegionAvail().x, side = std::clamp(c.wheel.room, 0.4f * all, all);
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 0.5f * (all - side));
     const float top = ImGui::GetCursorPosY();
     ImGui::SetNextItemWidth(side);
@@ -63,13 +63,13 @@ void wheel(Session& s) {
         wish(s, true);
     }
     s.ui.mark("Colour wheel");
-    c.wheel_height = ImGui::GetCursorPosY() - top;
+    c.wheel.height = ImGui::GetCursorPosY() - top;
 }
 
 void hex_field(Session& s) {
     ColourChoice& c = s.colours.choice;
     char text[16];
-    std::snprintf(text, sizeof text, "%s", c.hex.c_str());
+    std::snprintf(text, sizeof text, "%s", c.typed.hex.c_str());
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(s.ui.tr("Hex"));
     ImGui::SameLine();
@@ -78,8 +78,8 @@ void hex_field(Session& s) {
         std::clamp(ImGui::GetContentRegionAvail().x - 3 * s.ui.px(kMode + kGap), s.ui.px(48), s.ui.px(73)));
     const bool entered = ImGui::InputText("##hex", text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue);
     s.ui.mark("Hex");
-    if (ImGui::IsItemActive() || entered) c.hex = text;
-    if (entered || ImGui::IsItemDeactivatedAfterEdit()) set_colour(s, c.hex);
+    if (ImGui::IsItemActive() || entered) c.typed.hex = text;
+    if (entered || ImGui::IsItemDeactivatedAfterEdit()) set_colour(s, c.typed.hex);
     static constexpr std::pair<ColourSliders, const char*> modes[] = {
         {ColourSliders::rgb, "RGB"}, {ColourSliders::hsv, "HSV"}, {ColourSliders::lab, "Lab"}};
     for (const auto& [mode, name] : modes) {
@@ -187,21 +187,22 @@ void save(Session& s) {
     ColourChoice& c = s.colours.choice;
     const ink::Ink* ink = find_ink(s.colours, s.brush.ink);
     char name[64];
-    std::snprintf(name, sizeof name, "%s", c.name.c_str());
+    std::snprintf(name, sizeof name, "%s", c.typed.name.c_str());
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - s.ui.button_width("Save ink", 84) -
                             ImGui::GetStyle().ItemSpacing.x);
-    if (ImGui::InputTextWithHint("##ink name", s.ui.tr("Name this ink"), name, sizeof name)) c.name = name;
+    if (ImGui::InputTextWithHint("##ink name", s.ui.tr("Name this ink"), name, sizeof name)) c.typed.name = name;
     s.ui.mark("Ink name");
     ImGui::SameLine();
-    if (!s.ui.button("Save ink", "Keeps the ink in hand for every work, among your own", 84, ink && !c.name.empty()))
+    if (!s.ui.button("Save ink", "Keeps the ink in hand for every work, among your own", 84,
+                     ink && !c.typed.name.empty()))
         return;
     try {
         ink::Ink own = *ink;
-        stroke::check_name(c.name, "ink");
-        own.name = c.name;
+        stroke::check_name(c.typed.name, "ink");
+        own.name = c.typed.name;
         save_own_ink(c, std::move(own));
-        show_message(s.status, Message("Saved as {}", c.name));
-        c.name.clear();
+        show_message(s.status, Message("Saved as {}", c.typed.name));
+        c.typed.name.clear();
     } catch (const Error& error) {
         show_message(s.status, error.message());
     }
@@ -243,8 +244,8 @@ void colour_panel(Session& s) {
     save(s);
     recent(s);
     if (ui.button("Close the wheel", nullptr, 0)) c.shown = false;
-    const float below = ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y - c.wheel_height;
-    c.room_for_wheel = static_cast<float>(s.view.area.height) - 2 * ui.px(kPanelMargin) - below;
+    const float below = ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y - c.wheel.height;
+    c.wheel.room = static_cast<float>(s.view.area.height) - 2 * ui.px(kPanelMargin) - below;
     ImGui::End();
 }
 

@@ -32,7 +32,7 @@ void choose_style(Ui& ui, Lettering& l, float width) {
     if (ui.combo("Style", chosen, titles, width)) {
         l.wanted.style =
             styles[static_cast<std::size_t>(std::find(titles.begin(), titles.end(), chosen) - titles.begin())];
-        l.spacing = l.line_spacing = 0;
+        l.spacing = {};
     }
     ui.hint("Of the hand: regular, running, an even line, or a broad edge for letters");
 }

@@ -109,14 +109,14 @@ void lettering_row(Ui& ui, Lettering& l, const Row& row) {
     ImGui::SameLine(0, row.gap);
     if (l.empty()) return;
     const writer::Style& style = l.text->style;
-    double spacing = l.spacing > 0 ? l.spacing : style.spacing;
+    double spacing = l.spacing.characters > 0 ? l.spacing.characters : style.spacing;
     if (ui.named_slider("Spacing", spacing, {0.5, 3, "%.2f"}, "Between characters, part of their width", row.width))
-        l.spacing = spacing;
+        l.spacing.characters = spacing;
     ImGui::SameLine(0, row.gap);
-    double lines = l.line_spacing > 0 ? l.line_spacing : style.line_spacing;
+    double lines = l.spacing.lines > 0 ? l.spacing.lines : style.line_spacing;
     if (l.text->lines.size() > 1) {
         if (ui.named_slider("Line spacing", lines, {0.5, 4, "%.2f"}, "Between lines, part of the size", row.width))
-            l.line_spacing = lines;
+            l.spacing.lines = lines;
     } else if (!along) {
         ui.named_slider("Turn", l.turn, {-180 * kDegree, 180 * kDegree, "%.0f\xc2\xb0", kDegree},
                         "Shift and wheel over the model", row.width);

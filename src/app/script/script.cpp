@@ -249,7 +249,7 @@ std::optional<bool> Script::wait_for(Studio& studio, const ScriptCommand& c, dou
     const std::string word = c.words.empty() ? "" : c.words[0];
     if (c.name == "wait-ready") {
         if (waited > (word.empty() ? kLongestWait : std::atof(word.c_str()))) fail(c, "waited too long");
-        return is_settled(s) && !s.brush.shelf.busy() && !s.view.model_changed && waited > 0 && frames_ > 1;
+        return is_settled(s) && !s.brush.shelf.busy() && !s.view.model_changed && waited > 0 && frames_.count > 1;
     }
     if (c.name == "wait") return waited >= std::atof(word.c_str());
     if (c.name == "click" || c.name == "right-click" || (c.name == "move" && c.points.empty())) {
@@ -301,7 +301,7 @@ void Script::act(Studio& studio, const ScriptCommand& c, double now) {
     else if (c.name == "rate")
         sample_ = 1.0 / std::clamp(std::atof(word.c_str()), 10.0, 10000.0);
     else if (c.name == "set" && word == "draw-every")
-        draw_every_ = static_cast<std::size_t>(std::clamp(number_of(c.words[1]), 1.0, 1000.0));
+        frames_.draw_every = static_cast<std::size_t>(std::clamp(number_of(c.words[1]), 1.0, 1000.0));
     else if (c.name == "set")
         studio.set(word, c.words[1]);
     else if (c.name == "save")
@@ -381,12 +381,12 @@ double Script::patience(const Studio& studio) const {
 
 bool Script::looks() {
     if (!wanted_.picture.empty()) return true;
-    return (!wait_.on || pace_.on || fuzzer_) && ++looked_ % draw_every_ == 0;
+    return (!wait_.on || pace_.on || fuzzer_) && ++frames_.looked % frames_.draw_every == 0;
 }
 
 void Script::after_frame(Studio& studio, int width, int height, bool drawn) {
     if (fuzzer_) fuzzer_->contain(studio);
-    ++frames_;
+    ++frames_.count;
     if (drawn) ++report_.frames;
     if (wanted_.picture.empty()) return;
     const std::vector<std::uint8_t> rgb = render::read_pixels(0, 0, width, height);

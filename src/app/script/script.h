@@ -75,6 +75,10 @@ class Script {
         bool loss = false;
         std::optional<std::pair<int, int>> size;
     };
+    struct Frames {
+        std::size_t count = 0, looked = 0;  ///< all; in which it does not only wait
+        std::size_t draw_every = 1;         ///< of the latter
+    };
     /// State at the last report.
     struct ReportStart {
         std::size_t frames = 0;
@@ -107,8 +111,7 @@ class Script {
     unsigned held_ = 0;               ///< modifiers that are pressed
     std::optional<UiFuzzer> fuzzer_;  ///< while `random` plays
     std::size_t quits_ = 0;           ///< times that the fuzzer quit the program
-    std::size_t frames_ = 0;
-    std::size_t looked_ = 0, draw_every_ = 1;  ///< frames in which it does not only wait
+    Frames frames_;
     ReportStart report_;
 };
 

@@ -116,8 +116,8 @@ constexpr Setting kToolSettings[] = {
              v.choice<writer::Direction>({writer::kDirectionNames.begin(), writer::kDirectionNames.end()});
      }},
     {"text-size", [](Session& s, const SettingValue& v) { s.tools.lettering.side = v.within(1, 2000) * kMillimetre; }},
-    {"text-spacing", [](Session& s, const SettingValue& v) { s.tools.lettering.spacing = v.within(0, 10); }},
-    {"text-line-spacing", [](Session& s, const SettingValue& v) { s.tools.lettering.line_spacing = v.within(0, 10); }},
+    {"text-spacing", [](Session& s, const SettingValue& v) { s.tools.lettering.spacing.characters = v.within(0, 10); }},
+    {"text-line-spacing", [](Session& s, const SettingValue& v) { s.tools.lettering.spacing.lines = v.within(0, 10); }},
     {"text-turn", [](Session& s, const SettingValue& v) { s.tools.lettering.turn = -v.number * kDegree; }},
     {"text-brush",
      [](Session& s, const SettingValue& v) {
