@@ -111,9 +111,8 @@ class Pictures {
 
 /// Where a name has its `<UDIM>`; npos: nowhere.
 std::size_t place_of_number(const std::string& name) {
-    const auto at = std::ranges::search(name, kUdim, [](char a, char b) {
-                        return std::toupper(static_cast<unsigned char>(a)) == b;
-                    }).begin();
+    const auto at = std::search(name.begin(), name.end(), kUdim.begin(), kUdim.end(),
+                                [](char a, char b) { return std::toupper(static_cast<unsigned char>(a)) == b; });
     return at == name.end() ? name.npos : static_cast<std::size_t>(at - name.begin());
 }
 

@@ -48,14 +48,15 @@ class EdgeGrid {
         const auto [x, y] = cell_of(p);
         for (int dy = -1; dy <= 1; ++dy)
             for (int dx = -1; dx <= 1; ++dx) {
-                const auto all = std::ranges::equal_range(entries_, key(x + dx, y + dy), {}, &Entry::cell);
-                for (auto e = all.begin(); e != all.end(); ++e) {
+                const auto cell = key(x + dx, y + dy);
+                const auto end = std::ranges::upper_bound(entries_, cell, {}, &Entry::cell);
+                for (auto e = std::ranges::lower_bound(entries_, cell, {}, &Entry::cell); e != end; ++e) {
                     const Edge& edge = edges_[e->edge];
                     const bool is_near = e->area != own && segment_distance(edge.from, edge.to, p) <= distance;
                     ++compared;
                     if (is_near) found(e->area);
                     if (is_near || e->area == own)  // on to the next area
-                        e = std::prev(std::ranges::upper_bound(e, all.end(), e->area, {}, &Entry::area));
+                        e = std::prev(std::ranges::upper_bound(e, end, e->area, {}, &Entry::area));
                 }
             }
         return compared;

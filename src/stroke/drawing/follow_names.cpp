@@ -111,7 +111,7 @@ class PartMatch {
                 found = now;
                 if (members.size() != same->second.size()) continue;
                 const std::uint32_t own = is_[same->second[k]].group;
-                std::ranges::rotate(found, std::ranges::find(found, own));
+                std::rotate(found.begin(), std::ranges::find(found, own), found.end());
             }
         }
         take();
