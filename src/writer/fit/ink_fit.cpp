@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/system/interrupt.h"
+#include "writer/fit/fairing.h"
 #include "writer/fit/ink_score.h"
 
 namespace tuft::writer {
@@ -25,6 +26,12 @@ constexpr double kNeedle = 24;           // units about an end in which its ink 
 constexpr double kNeedleBack = 0.6;      // part of that taken back at once
 constexpr float kDeepest = 24;           // units of depth that count
 constexpr double kPrice = 0.002;         // of the score, for a knuckle of the least curvature
+constexpr double kFairPrice = 0.006;     // likewise, where lines are made fair
+constexpr double kStiffWay = 0.4, kStiffHalf = 0.05;  // of the path and its half widths: halve waves of 40 and 24 units
+constexpr double kRound = 0.9;                        // of a stroke's half width: the radius that a print of it has
+constexpr float kSpike = 0.1f;                        // weight of wanted cells that such prints cannot reach
+constexpr double kLevel = 4;                          // units between the radii that are told apart
+constexpr int kLevels = 8;
 constexpr double kGood = 0.98, kSettled = 0.002;  // a path that scores so much, and gains less in a try, stays
 constexpr double kBehind = 0.06;                  // over the tries so far: less than the best by more is given up
 
@@ -239,6 +246,65 @@ void correct(std::vector<Station>& s, const std::vector<Station>& first, const s
     if (manner.whole_head) keep_head(s, first);
 }
 
+/// Lowers the weight of wanted cells that no round print of the stroke reaches from within: sharp corners. A path that
+/// is drawn into them leaves balls beside them.
+FitTarget without_spikes(FitTarget target, const std::vector<Station>& stations) {
+    const Cells& wanted = target.wanted;
+    const std::vector<float> room = clearances(wanted);
+    std::vector<std::uint8_t> level(wanted.inside.size(), 0);
+    for (int j = 0; j < wanted.height; ++j)
+        for (int i = 0; i < wanted.width; ++i) {
+            const std::size_t at = std::size_t(j) * wanted.width + i;
+            if (!wanted.inside[at]) continue;
+            const double half = stations[nearest_station(stations, wanted.centre(i, j))].half;
+            level[at] = static_cast<std::uint8_t>(std::clamp(static_cast<int>(kRound * half / kLevel), 0, kLevels));
+        }
+    if (target.weights.empty()) target.weights.assign(wanted.inside.size(), 1.0f);
+    for (int l = 1; l <= kLevels; ++l) {
+        const auto radius = static_cast<float>(l * kLevel);
+        Cells narrow = wanted;  // where no disc of this radius has its middle
+        for (std::size_t at = 0; at < room.size(); ++at) narrow.inside[at] = room[at] < radius;
+        const std::vector<float> distance = clearances(narrow);
+        for (std::size_t at = 0; at < room.size(); ++at)
+            if (level[at] == l && distance[at] > radius) target.weights[at] *= kSpike;
+    }
+    return target;
+}
+
+Try judged(const FitTarget& target, const std::vector<float>& depths, const stroke::StrokeSamples& trace,
+           const stroke::PlaneInk& ink, const std::vector<Station>& next, const std::vector<Station>& sides,
+           double unit) {
+    const std::vector<float> coverage = coverage_by(ink, target.wanted);
+    return {score_of(target, depths, coverage), errors_of(next, sides, target, {trace, ink, coverage, unit})};
+}
+
+/// The last drawings, in steps nearly as fine as those of painting. `whole`: the target with its spikes.
+void fit_finely(FitResult& best, const FitTarget& target, const FitTarget& whole, const std::vector<float>& depths,
+                const BrushHand& hand, const Pace& pace, const FitOptions& options) {
+    // Ink depends on the step: in the steps of a painter it lies a unit beside that of the tries.
+    stroke::PlaneDrawing fine(hand.preset, hand.hold, options.fine_step * hand.unit, target.wanted.cell * hand.unit);
+    const std::vector<EdgeTurn> wanted_turns = turns_wanted(target.wanted);
+    const std::vector<Station> before_last = best.stations;
+    const std::vector<double> soft = last_softness_of(before_last);
+    std::vector<Station> next = before_last;
+    const double price = options.fair ? kFairPrice : kPrice;
+    double best_value = 0;
+    for (int t = 1; t <= options.last_tries; ++t) {
+        check_interrupt();
+        const stroke::StrokeSamples trace = samples_of(next, hand, pace);
+        const stroke::PlaneInk& ink = fine.draw(trace);
+        const Try now = judged(target, depths, trace, ink, next, next, hand.unit);
+        const double value =
+            now.reached.score - price * sharpness_of(whole, wanted_turns, coverage_by(ink, target.wanted));
+        ++best.tries;
+        if (t == 1 || value > best_value)
+            best.stations = next, best.iou = now.reached.iou, best.score = now.reached.score, best_value = value;
+        if (t == options.last_tries) break;
+        correct(next, before_last, soft, now.errors, kManners[0]);
+        if (options.fair) make_fair(next, kStiffWay, kStiffHalf);
+    }
+}
+
 }  // namespace
 
 stroke::PlaneInk draw_on_plane(std::span<const Station> stations, const BrushHand& hand, const Pace& pace, double step,
@@ -247,21 +313,16 @@ stroke::PlaneInk draw_on_plane(std::span<const Station> stations, const BrushHan
                              cell * hand.unit);
 }
 
-FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& target, const BrushHand& hand,
+FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& whole, const BrushHand& hand,
                        const Pace& pace, const FitOptions& options, const std::vector<Station>& other) {
+    const FitTarget target = options.fair ? without_spikes(whole, stations) : whole;
     const std::vector<float> depths = depths_of(target.wanted);
-    const auto judged = [&](const stroke::StrokeSamples& trace, const stroke::PlaneInk& ink,
-                            const std::vector<Station>& next, const std::vector<Station>& sides) {
-        const std::vector<float> coverage = coverage_by(ink, target.wanted);
-        return Try{score_of(target, depths, coverage),
-                   errors_of(next, sides, target, {trace, ink, coverage, hand.unit})};
-    };
     const double cell = target.wanted.cell * hand.unit;
     stroke::PlaneDrawing coarse(hand.preset, hand.hold, options.step * hand.unit, cell);
     const auto try_out = [&](const std::vector<Station>& next, const std::vector<Station>& sides) {
         check_interrupt();
         const stroke::StrokeSamples trace = samples_of(next, hand, pace);
-        return judged(trace, coarse.draw(trace), next, sides);
+        return judged(target, depths, trace, coarse.draw(trace), next, sides, hand.unit);
     };
     FitResult best{.stations = stations};
     const auto fit_from = [&](const std::vector<Station>& first, const Try& first_try, const Manner& manner) {
@@ -277,6 +338,7 @@ FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& ta
             if (t > 2 && own.score > kGood && gain < kSettled) break;
             if (t > 1 && own.score < best.score - kBehind / t) break;
             correct(next, first, soft, now.errors, manner);
+            if (options.fair) make_fair(next, kStiffWay, kStiffHalf);
         }
         own.tries += best.tries;
         if (own.score > best.score)
@@ -291,25 +353,7 @@ FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& ta
         for (const Manner& manner : kManners)
             if (&manner == kManners || best.iou < options.weak) fit_from(*begin, first_try, manner);
     }
-    // Ink depends on the step: in the steps of a painter it lies a unit beside that of the tries.
-    stroke::PlaneDrawing fine(hand.preset, hand.hold, options.fine_step * hand.unit, cell);
-    const std::vector<EdgeTurn> wanted_turns = turns_wanted(target.wanted);
-    const std::vector<Station> before_last = best.stations;
-    const std::vector<double> soft = last_softness_of(before_last);
-    std::vector<Station> next = before_last;
-    double best_value = 0;
-    for (int t = 1; t <= options.last_tries; ++t) {
-        check_interrupt();
-        const stroke::StrokeSamples trace = samples_of(next, hand, pace);
-        const stroke::PlaneInk& ink = fine.draw(trace);
-        const Try now = judged(trace, ink, next, next);
-        const double value =
-            now.reached.score - kPrice * sharpness_of(target, wanted_turns, coverage_by(ink, target.wanted));
-        ++best.tries;
-        if (t == 1 || value > best_value)
-            best.stations = next, best.iou = now.reached.iou, best.score = now.reached.score, best_value = value;
-        if (t < options.last_tries) correct(next, before_last, soft, now.errors, kManners[0]);
-    }
+    fit_finely(best, target, whole, depths, hand, pace, options);
     return best;
 }
 

@@ -29,6 +29,7 @@ struct FitOptions {
     /// Units, in the last drawings: ink depends on the step, by .005 of the overlap from 5 to 1.
     double fine_step = 2.5;
     int last_tries = 3;  ///< drawings after those; each but the first is corrected
+    bool fair = true;    ///< the path and its half widths are made fair (`make_fair`), and spikes left as they come
 };
 
 /// Result of `fit_stations`.
@@ -55,7 +56,10 @@ struct FitResult {
 /// manner ends early where its score is above 0.98 and a try gains less than 0.002, and where after t tries it is
 /// behind the best of the others by more than 0.06 / t. At last the path is corrected in steps nearly as fine as those
 /// of painting, smoothed over at most 1.2 stations; of these drawings the one is kept that has the largest score less
-/// 0.002 times `sharpness_of`, a sum over its knuckles.
+/// 0.002, or 0.006 with `options.fair`, times `sharpness_of`, a sum over its knuckles.
+///
+/// With `options.fair` the path and its half widths are made fair after each correction (`make_fair`), and wanted cells
+/// that no disc of 0.9 half widths within the area reaches weigh a tenth.
 FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& target, const BrushHand& hand,
                        const Pace& pace, const FitOptions& options = {}, const std::vector<Station>& other = {});
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kMargin = 80;                 // units of cells around a stroke
 constexpr float kUnder = 0.25f;                // weight of an error under another stroke
-constexpr std::uint64_t kVersion = 20;         // of the fit
+constexpr std::uint64_t kVersion = 21;         // of the fit
 constexpr std::size_t kMostStations = 20'000;  // of a stroke
 constexpr double kMiddlePressure = 0.4;        // that draws the median width
 constexpr double kCoarse = 3;                  // median widths of a line at that pressure: the brush is too coarse
@@ -77,6 +77,7 @@ struct Writer::Job {
     std::vector<Station> stations, other;  // the path, and another begin of the fit
     FitTarget target;
     bool fit = true;
+    bool fair = true;  // not for lines of a pen: areas predicted for their folded heads lose by it
     std::uint64_t key = 0;
 };
 
@@ -121,6 +122,7 @@ Writer::Job Writer::job_of(const Glyph& glyph, std::size_t stroke) const {
         if (outlined) return fill(cells, rings);
         for (const Ring& ring : rings) fill(cells, std::span(&ring, 1));
     };
+    job.fair = outlined || !glyph.of_pen;
     job.target.wanted = cells_over(rings_of(stroke), 2, kMargin);
     Cells others = job.target.wanted;
     add(job.target.wanted, stroke);
@@ -129,7 +131,7 @@ Writer::Job Writer::job_of(const Glyph& glyph, std::size_t stroke) const {
     for (const std::uint8_t under : others.inside) job.target.weights.push_back(under ? kUnder : 1.0f);
     job.stations = make_stations(line, sides, job.target.wanted);
     if (line.segments.size() > 1) job.other = make_stations(line, sides, job.target.wanted, false);
-    job.key = hash_of(job.other, hash_of(job.stations, kVersion));
+    job.key = hash_of(job.other, hash_of(job.stations, 2 * kVersion + job.fair));
     job.key = hash_span(std::span<const std::uint8_t>(job.target.wanted.inside), job.key);
     job.key = hash_span(std::span<const float>(job.target.weights), job.key);
     return job;
@@ -150,8 +152,8 @@ Writer::Fitted Writer::fit_stroke(const Glyph& glyph, std::size_t stroke, const 
     if (const auto known = known_.find(key); known != known_.end()) return {known->second, key, false};
     if (std::optional<std::vector<Station>> stored = cached(key)) return {std::move(*stored), key, false};
     Fitted made{{}, key, true};
-    made.stations =
-        fit_stations(job.stations, job.target, with, at, {.tries = options_.style.tries}, job.other).stations;
+    const FitOptions fit{.tries = options_.style.tries, .fair = job.fair};
+    made.stations = fit_stations(job.stations, job.target, with, at, fit, job.other).stations;
     store(key, made.stations);
     return made;
 }
