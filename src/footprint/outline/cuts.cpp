@@ -13,8 +13,9 @@ namespace tuft::footprint {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kSearchSteps = 4;  // per segment, to find where the surface meets the surface
-constexpr int kSamples = 48;     // sections taken from a stretch that touches
+constexpr int kSearchSteps = 4;                // per segment, to find where the surface meets the surface
+constexpr double kTurns = 0.3, kTurned = 0.7;  // squared sine of a strip's turn from which on it ends across e
+constexpr int kSamples = 48;                   // sections taken from a stretch that touches
 
 /// Places of the samples of a stretch, 0–1, close together at both ends.
 const std::array<double, kSamples>& sample_places() {
@@ -158,8 +159,10 @@ class BranchSurface {
     /// thinner than wide.
     void add_cap(const brush::Section& tip, bool strip, const Frame& frame, const brush::ContactPlane* plane,
                  double film) {
-        const bool thin_along_e = strip && std::abs(tip.turn.y) > std::abs(tip.turn.x) && tip.a < tip.b;
-        const double r = strip ? (thin_along_e ? tip.a : tip.b) + film : std::sqrt((tip.a + film) * (tip.b + film));
+        // Whether e is across the strip, 0–1.
+        const double turned =
+            strip && tip.a < tip.b ? smooth_step((tip.turn.y * tip.turn.y - kTurns) / (kTurned - kTurns)) : 0;
+        const double r = strip ? std::lerp(tip.b, tip.a, turned) + film : std::sqrt((tip.a + film) * (tip.b + film));
         if (!(r > 1e-7)) return;
         static constexpr std::array<double, 5> kAhead{1, 0.98, 0.9, 0.7, 0.4};
         for (std::size_t k = 0; k < kAhead.size(); ++k) {
@@ -167,8 +170,8 @@ class BranchSurface {
             const double shrink = std::sqrt(1 - kAhead[k] * kAhead[k]);
             ring.centre += kAhead[k] * r * tip.tangent;
             nodes_.push_back(cut_of(ring, frame, plane, film));
-            if (!strip || thin_along_e) nodes_.back().a *= shrink;
-            if (!thin_along_e) nodes_.back().b *= shrink;
+            nodes_.back().a *= std::lerp(1.0, shrink, strip ? turned : 1);
+            nodes_.back().b *= std::lerp(shrink, 1.0, turned);
             steps_.push_back((kAhead[k] - (k + 1 < kAhead.size() ? kAhead[k + 1] : 0)) * r);
         }
     }

@@ -114,8 +114,8 @@ void add_loops(const Loops& loops, std::size_t begin, std::size_t end, Envelope&
 Outline closed_outline(const Envelope& envelope, const PatchFrame& patch, const Ends& ends, int points, bool edges);
 
 /// Returns the branches of a row whose strips that stand on their edge reach no further than midway to their
-/// neighbours, at constant area: a row that bends along its broad side is sheared, and lies more closely than it is
-/// wide. The hair of a strip's lower edge would else touch where that of its neighbour, below it, does not.
+/// neighbours: a row that bends along its broad side is sheared, and lies more closely than it is wide. The hair of a
+/// strip's lower edge would else touch where that of its neighbour, below it, does not. Sections keep their thickness.
 Recycled<brush::Branch> bound_on_edge(const brush::TuftState& tuft, const Frame& frame,
                                       std::span<const NodePlanes> planes);
 

@@ -76,7 +76,6 @@ Recycled<brush::Branch> bound_on_edge(const brush::TuftState& tuft, const Frame&
             const double part = 0.5 * (up + down) / half;
             s.centre += 0.5 * Trail::kStripChord * (up - down) * broad;
             axes.broad *= part;
-            axes.thick /= part;
             axes.set(s);
         }
     }
