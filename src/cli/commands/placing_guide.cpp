@@ -27,8 +27,8 @@ constexpr double kLeastView = 0.03;         // metres
 constexpr double kSteepest = 80;            // degrees of elevation
 constexpr double kFromAbove = 58;           // degrees of elevation, into a bowl
 constexpr double kHardlyMore = 1.05;        // what another view of all pieces must show over the one before
-constexpr int kEdgeSamples = 8;             // rays per pixel on edges: half of a product picture's
-constexpr int kLightStep = 4;               // pixels between samples of light
+constexpr int kEdgeSamples = 4;             // rays per pixel on edges: a quarter of a product picture's
+constexpr int kLightStep = 6;               // pixels between samples of light
 constexpr double kLevelArrow = 0.4;         // rise of an arrow over its length below which it points to the back
 
 /// A piece on the model.

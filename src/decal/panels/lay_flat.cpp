@@ -22,17 +22,27 @@ constexpr int kMostSteps = 400;
 constexpr int kPatience = 60;  // steps without a gain of 1 %
 constexpr double kMomentum = 0.75;
 
-/// A 2 × 2 matrix (a, b; c, d) as rotation · diag(s1, s2) · rotation.
-struct Svd {
-    double s1 = 1, s2 = 1;    // s1 ≥ |s2|; s2 < 0 where the map turns over
-    double phi = 0, psi = 0;  // radians, of the rotation after and before the scaling
+/// A 2 × 2 matrix (a, b; c, d) as a turn and scaling (e, −h; h, e) and a mirror and scaling (f, g; g, −f). Its singular
+/// values are the sum and the difference of both scales.
+struct TurnAndMirror {
+    double e, f, g, h;
+    double q, r;  // scales of the turn and of the mirror
+
+    double s1() const { return q + r; }
+    double s2() const { return q - r; }  // < 0 where the map turns over
 };
 
-Svd svd(double a, double b, double c, double d) {
-    const double e = 0.5 * (a + d), f = 0.5 * (a - d), g = 0.5 * (c + b), h = 0.5 * (c - b);
-    const double q = std::hypot(e, h), r = std::hypot(f, g);
-    const double a1 = std::atan2(g, f), a2 = std::atan2(h, e);
-    return {q + r, q - r, 0.5 * (a2 + a1), 0.5 * (a2 - a1)};
+TurnAndMirror parts_of(const std::array<double, 4>& m) {
+    const double e = 0.5 * (m[0] + m[3]), f = 0.5 * (m[0] - m[3]), g = 0.5 * (m[2] + m[1]), h = 0.5 * (m[2] - m[1]);
+    return {e, f, g, h, std::sqrt(e * e + h * h), std::sqrt(f * f + g * g)};
+}
+
+/// The matrix with the same axes and other singular values, row by row.
+std::array<double, 4> with_values(const TurnAndMirror& m, double s1, double s2) {
+    const double q = 0.5 * (s1 + s2), r = 0.5 * (s1 - s2);
+    const double e = m.q > 0 ? q * (m.e / m.q) : q, h = m.q > 0 ? q * (m.h / m.q) : 0;
+    const double f = m.r > 0 ? r * (m.f / m.r) : r, g = m.r > 0 ? r * (m.g / m.r) : 0;
+    return {e + f, g - h, g + h, e - f};
 }
 
 /// The map from a triangle's own plane onto the sheet, row by row.
@@ -58,10 +68,9 @@ std::vector<Reference> references_of(const ChartMesh& chart) {
 
 Stretch stretch_of(const Reference& r, const std::array<std::uint32_t, 3>& f, std::span<const Vec2> flat) {
     if (is_needle(r)) return {};
-    const auto [a, b, c, d] = map_of(r, f, flat);
-    const Svd m = svd(a, b, c, d);
-    if (!(m.s2 > 0)) return {std::numeric_limits<double>::infinity(), 0};
-    return {1 / m.s2, 1 / m.s1};
+    const TurnAndMirror m = parts_of(map_of(r, f, flat));
+    if (!(m.s2() > 0)) return {std::numeric_limits<double>::infinity(), 0};
+    return {1 / m.s2(), 1 / m.s1()};
 }
 
 /// Greatest and least stretch of all triangles.
@@ -155,14 +164,9 @@ class StrainLimiter {
         for (std::size_t t = 0; t < references_.size(); ++t) {
             const auto& f = chart_.faces[t];
             const Reference& r = references_[t];
-            const auto [a, b, c, d] = map_of(r, f, at);
-            const Svd m = svd(a, b, c, d);
-            const double s1 = std::clamp(m.s1, lo, hi), s2 = std::clamp(m.s2, lo, hi);
-            const double cp = std::cos(m.phi), sp = std::sin(m.phi), cs = std::cos(m.psi), ss = std::sin(m.psi);
-            const auto target = [&](const Vec2& x) {
-                const Vec2 y(s1 * (cs * x.x - ss * x.y), s2 * (ss * x.x + cs * x.y));
-                return Vec2(cp * y.x - sp * y.y, sp * y.x + cp * y.y);
-            };
+            const TurnAndMirror m = parts_of(map_of(r, f, at));
+            const auto [a, b, c, d] = with_values(m, std::clamp(m.s1(), lo, hi), std::clamp(m.s2(), lo, hi));
+            const auto target = [&](const Vec2& x) { return Vec2(a * x.x + b * x.y, c * x.x + d * x.y); };
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::size_t l = (k + 1) % 3;
                 const double w = r.half_cot[k];
