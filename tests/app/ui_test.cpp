@@ -67,7 +67,7 @@ bool has_english(const std::string& text) {
         kName(
             "mm|km|um|cm|in|ft|PLY|OBJ|STL|OFF|SVG|IGES|glb|GLB|obj|ply|stl|off|tuft|endsolid|UV|MiB|gltf|JSON|TOML|"
             "UTF|"
-            "xyz|end|header|glTF|FBX|DAE|COLLADA|X3D|AMF|MF|none|svg|STEP|dae|fbx|or|and");
+            "xyz|end|header|glTF|FBX|DAE|COLLADA|X3D|VRML|gunzip|AMF|MF|none|svg|STEP|dae|fbx|or|and");
     const std::string words = std::regex_replace(text, std::regex("'[^']*'|\xe2\x80\x9c[^\xe2]*\xe2\x80\x9d"), "");
     for (std::sregex_iterator it(words.begin(), words.end(), kWord), end; it != end; ++it)
         if (!std::regex_match(it->str(), kName)) return true;
