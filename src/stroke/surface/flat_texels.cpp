@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "core/system/parallel.h"
 #include "stroke/placement/surface_mapping.h"
@@ -16,9 +17,10 @@ constexpr int kFewestNodes = 33;    // nodes along a side
 constexpr int kMostNodes = 400;     // likewise
 constexpr double kFacing = 0.3;     // cosine of the angle between texel and grid, below which a texel faces away
 constexpr double kWall = -0.2;      // the same where walls are reached
-constexpr double kStep = 0.5, kGapStep = 0.15;  // rise between connected neighbours, over their distance
-constexpr double kGapFacing = 0.9;              // cosine between the normals at both sides of a gap
-constexpr double kCutHeight = 0.25;             // of the grid's reach, off its surface
+constexpr double kStep = 0.5, kGapStep = 0.15;              // rise between connected neighbours, over their distance
+constexpr double kGapFacing = 0.9;                          // cosine between the normals at both sides of a gap
+constexpr double kBallSlack = 1.001, kBallRounding = 1e-6;  // of clusters' radii, which are floats; metres
+constexpr double kCutHeight = 0.25;                         // of the grid's reach, off its surface
 constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
 
 /// The drawing's rectangle on the surface, as nodes of a grid. A draped one lies on the smoothed surface: nodes that
@@ -250,14 +252,22 @@ class TileUnfolding {
     bool has_last_ = false;
 };
 
-/// Takes `at(tile's shape, texel)` for the texels of charts; tiles without one that is reached are dropped.
-template <class Fill>
-std::vector<FlatTexels::Tile> gather_tiles(const Model& model, const Fill& fill) {
+/// Takes `at(tile's shape, texel)` for the texels of charts; tiles without one that is reached are dropped. Only tiles
+/// of which `near` holds for a ball round the texels of a cluster are looked at: the others may lie in a file as yet.
+template <class Near, class Fill>
+std::vector<FlatTexels::Tile> gather_tiles(const Model& model, const Near& near, const Fill& fill) {
     const atlas::TexelMap& map = model.texels;
     std::vector<std::unique_ptr<FlatTexels::Tile>> found(map.n_slots());
     parallel_for(map.n_slots(), 16, [&](std::size_t begin, std::size_t end) {
         atlas::TexelShape buffer;
         for (std::size_t slot = begin; slot < end; ++slot) {
+            const std::size_t first = map.cluster_start[slot];
+            const auto clusters =
+                std::span(model.clusters.clusters).subspan(first, map.cluster_start[slot + 1] - first);
+            if (std::ranges::none_of(clusters, [&](const atlas::TexelCluster& c) {
+                    return near(Vec3(c.centre), kBallSlack * static_cast<double>(c.radius) + kBallRounding);
+                }))
+                continue;
             const atlas::TexelShape& shape = atlas::shape_of(map, static_cast<std::uint32_t>(slot), buffer);
             FlatTexels::Tile tile{.slot = static_cast<std::uint32_t>(slot)};
             if (!fill(shape, map.tiles[slot], tile)) continue;
@@ -279,6 +289,12 @@ Vec3 position_in(const atlas::TexelShape& s, int t) {
 }
 Vec3 normal_in(const atlas::TexelShape& s, int t) {
     return {double(s.nx[t]), double(s.ny[t]), double(s.nz[t])};
+}
+
+/// Whether a ball meets the box round the grid.
+bool near_grid(const SurfaceGrid& grid, const Vec3& centre, double radius) {
+    return glm::all(glm::lessThanEqual(centre, grid.bounds().hi + grid.reach() + radius)) &&
+           glm::all(glm::greaterThanEqual(centre, grid.bounds().lo - grid.reach() - radius));
 }
 
 /// Whether a texel of the tile may lie over the grid.
@@ -305,7 +321,8 @@ void FlatTexels::unfold(const Model& model, const mesh::SurfaceQuery& surface) {
     const SurfaceGrid grid(surface, frame_);
     if (grid.empty()) return;
     if (frame_.placement.mapping == SurfaceMapping::drape) lattice_ = grid.lattice();
-    tiles_ = gather_tiles(model, [&](const atlas::TexelShape& shape, const atlas::TexelTile& in, Tile& out) {
+    const auto near = [&](const Vec3& centre, double radius) { return near_grid(grid, centre, radius); };
+    tiles_ = gather_tiles(model, near, [&](const atlas::TexelShape& shape, const atlas::TexelTile& in, Tile& out) {
         if (!reaches(grid, shape, in)) return false;
         TileUnfolding unfolding(grid, model.texels.texel_size, frame_.edges);
         for (int t = 0; t < atlas::kTileTexels; ++t) {
@@ -332,7 +349,12 @@ void FlatTexels::project(const Model& model, const mesh::SurfaceQuery& surface) 
     // With right and down of the other hand the reader is on the other side.
     const double texel = model.texels.texel_size, far = 4 * model.mesh->bounds.diagonal();
     const Vec2 margin(2 * texel);
-    tiles_ = gather_tiles(model, [&](const atlas::TexelShape& shape, const atlas::TexelTile& in, Tile& out) {
+    const auto near = [&](const Vec3& centre, double radius) {
+        const Vec3 d = centre - placement.origin;
+        const Vec2 flat(glm::dot(d, axes.right), glm::dot(d, axes.down)), beyond = margin + radius;
+        return glm::all(glm::greaterThanEqual(flat, low - beyond)) && glm::all(glm::lessThanEqual(flat, high + beyond));
+    };
+    tiles_ = gather_tiles(model, near, [&](const atlas::TexelShape& shape, const atlas::TexelTile& in, Tile& out) {
         if (grid && !reaches(*grid, shape, in)) return false;
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             out.at[t] = Vec2f(kNowhere);
