@@ -228,9 +228,9 @@ PlaneErrors find_plane_errors(const Recycled<NodeWalls>& walls, const Recycled<N
 
 /// Gives the nodes of `near` the walls that were found where they came to rest, from the root, which the walls of the
 /// next ones agree with.
-void renew_walls(Recycled<NodeWalls>& walls, const Recycled<std::size_t>& near, const Recycled<NodeContact>& found,
-                 std::span<const Vec3> nodes, const NodeRadii& radii, const Recycled<std::size_t>& lengths) {
-    const Recycled<NodeWalls> before = walls;
+void renew_walls(Recycled<NodeWalls>& walls, const Recycled<NodeWalls>& before, const Recycled<std::size_t>& near,
+                 const Recycled<NodeContact>& found, std::span<const Vec3> nodes, const NodeRadii& radii,
+                 const Recycled<std::size_t>& lengths) {
     for (const std::size_t i : near) {
         const NodeWalls* inboard = is_root(lengths, i) ? nullptr : &walls[i + 1];
         const NodeWalls& old = before[i];
@@ -281,7 +281,7 @@ Bent solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memory) {
             break;
         }
         Recycled<NodeWalls> walls_before = walls;
-        renew_walls(walls, errors.near, found, compared, node_radius, lengths);
+        renew_walls(walls, walls_before, errors.near, found, compared, node_radius, lengths);
         StepPlanes met_before = std::move(met);
         met = StepPlanes(walls, radii.size(), beside);
         Recycled<Vec3> nodes_before = std::move(now);

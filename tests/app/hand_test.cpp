@@ -145,6 +145,22 @@ TEST_F(PointerOnSheet, OnAStringAPensStrokeEndsWhereThePenLeaves) {
     EXPECT_NEAR(depth / stroke::working_depth(preset_), 0.575, 0.004);
 }
 
+// A dot: the pen lands lightly, slips a little, presses, and leaves.
+TEST_F(PointerOnSheet, OnAStringAPenThatRestsPressesAsItPresses) {
+    PointerSettings s;
+    s.string = 0.010;
+    PointerInput hand(*query_, preset_, s);
+    double deepest = 0;
+    for (int i = 0; i <= 100; ++i) {
+        const double pressure = i < 100 ? std::min(0.8, 0.05 + 0.015 * i) : 0.02;
+        for (const StrokeStep& step : hand.move(above(std::min(2e-4, 1e-4 * i), 0, 0.004 * i, pressure)))
+            for (const brush::Pose& p : step.poses)
+                deepest = std::max(deepest, preset_.length - (p.position.z - mesh_->bounds.hi.z));
+    }
+    // It follows the pen in a few milliseconds, and the pen presses so for 0.2 s.
+    EXPECT_NEAR(deepest / stroke::working_depth(preset_), 0.8, 1e-3);
+}
+
 TEST_F(PointerOnSheet, LeavingTheModelLiftsAndComingBackBegins) {
     PointerSettings s;
     PointerInput hand(*query_, preset_, s);

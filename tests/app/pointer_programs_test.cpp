@@ -75,9 +75,8 @@ class PointerThroughBothPrograms : public BothPrograms {
             painter = std::move(s.paint_thread);
             return fmt::format(
                 "--strokes {}/hand.inkml --brush {} --ink carbon --as-pointer --pixel {} --smooth 1 "
-                "--stabilise 2 --pressure {}",
-                folder_, brush, render::metres_per_pixel(camera, s.view.orbit.target) / kMillimetre,
-                pen ? "none" : "speed+dwell");
+                "--stabilise 2",
+                folder_, brush, render::metres_per_pixel(camera, s.view.orbit.target) / kMillimetre);
         });
         return painted;
     }

@@ -273,6 +273,7 @@ TEST_F(BadInput, NumbersThatAreNoNumbers) {
               "--radial", "--atlas-size", "--zoom", "--light", "--sharp-angle", "--pages", "--threads"})
             expect_refused(paint + option + "=" + bad, 2, option);
         expect_refused(paint + "--edges end-before --edge-margin=" + bad, 2, "--edge-margin");
+        expect_refused(paint + "--as-pointer --pixel=" + bad, 2, "--pixel");
         for (const char* option : {"--film", "--parts"})
             expect_refused(std::string("ink match '#603010' ") + option + "=" + bad, 2, option);
         for (const char* option : {"--film", "--to-film"})

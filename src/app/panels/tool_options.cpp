@@ -36,7 +36,8 @@ void brush_row(const OptionParts& s, const Row& row) {
         size_brush(s.brush, s.status, now / whole);
     ImGui::SameLine(0, row.gap);
     ui.named_slider("Pressure", s.tools.pointer.pressure, {0.02, 1, "%.2f"},
-                    "How deep the brush is pressed at rest: part of half the hair's length. Keys [ and ]", row.width);
+                    "How deep the brush is pressed in slow motion: part of half the hair's length. Keys [ and ]",
+                    row.width);
     ImGui::SameLine(0, row.gap);
     ui.named_slider("Stabiliser", s.tools.pointer.string, {0, 0.03, "%.1f mm", kMillimetre},
                     "The brush follows on a string of this length", row.width);

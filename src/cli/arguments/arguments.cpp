@@ -49,6 +49,7 @@ CLI::App* add_paint(CLI::App& app, Paint& paint) {
     allow_shipped(command->add_option("--strokes", paint.strokes, "InkML files, painted in the order given"))
         ->required();
     add_paint_options(command, paint);
+    add_pointer_options(command, paint);
     return command;
 }
 

@@ -50,6 +50,8 @@ void add_view(CLI::App* app, View& v);
 void add_write_options(CLI::App* app, Write& write);
 /// Adds what `tuft paint` takes besides its model, its stroke files and the common options.
 void add_paint_options(CLI::App* app, Paint& paint);
+/// Recorded strokes as by the pointer of the window.
+void add_pointer_options(CLI::App* app, Paint& paint);
 /// Adds `tuft device` with its commands.
 CLI::App* add_device(CLI::App& app, DeviceWork& device);
 /// Adds `tuft decals`.

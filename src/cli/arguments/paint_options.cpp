@@ -133,15 +133,23 @@ void add_hand_options(CLI::App* p, Paint& paint) {
     p->add_flag("--roll-follow", paint.hand.roll_follow,
                 "turn the broad side of the ferrule across the path as flat strokes go on; --roll is added");
     p->add_option("--bias,--habit", paint.hand.bias, "correct a writer's bias (.toml, made by 'tuft bias')");
+}
+
+}  // namespace
+
+void add_pointer_options(CLI::App* p, Paint& paint) {
     CLI::Option* pointer = p->add_flag(
         "--as-pointer", paint.hand.as_pointer,
-        "paint flat strokes of a hand as the pointer of tuft-studio does: aimed at the model along their placement, "
-        "sample by sample, over gaps and off at edges; the journal holds the poses");
+        "paint recorded strokes of a hand as the pointer of tuft-studio does: aimed at the model along their "
+        "placement, "
+        "sample by sample, over gaps and off at edges; the journal holds the poses; --smooth 1 steadies as it does");
     p->add_option("--pixel", paint.hand.pixel_mm, "size of that pointer's pixel on the model")
         ->check(number_in(1e-6, 1e4))
         ->type_name("MM")
         ->needs(pointer);
 }
+
+namespace {
 
 /// Where flat strokes go.
 void add_place_options(CLI::App* p, Paint& paint) {

@@ -321,22 +321,28 @@ int run(const Paint& a) {
 }
 
 std::vector<stroke::JournalEntry> draw_with_pointer(const std::vector<stroke::JournalEntry>& strokes,
-                                                    stroke::Document& painting, double pixel) {
+                                                    stroke::Document& painting, const mesh::SurfaceQuery& surface,
+                                                    double pixel, Console& console) {
     std::vector<stroke::JournalEntry> out;
+    std::size_t number = 0;
     for (const stroke::JournalEntry& entry : strokes) {
         const auto* flat = entry.as<stroke::PaintStroke>();
-        if (!flat || !flat->trace.flat || !flat->trace.stencil.empty()) {
+        number += flat != nullptr;
+        if (!flat || !flat->trace.flat || !flat->trace.stencil.empty() || flat->layer == stroke::kPaletteLayer) {
             out.push_back(entry);
             continue;
         }
         const stroke::StrokeSettings& settings = flat->settings;
-        const bool pen = settings.pressure == stroke::PressureFrom::none;
-        const mesh::SurfaceQuery& surface = *painting.parts().surface();
+        const bool pen = flat->trace.pressed && settings.pressure == stroke::PressureFrom::none;
         const stroke::HolderOptions holder = painting.materials().holder(flat->brush, surface.mesh(), true);
         stroke::PointerInput pointer(surface, painting.materials().brush(flat->brush),
                                      stroke::pointer_settings(settings), {holder.tip_lag, holder.tip_lag_change});
         const std::vector<stroke::Aim> aims = stroke::aims_of(flat->trace, surface.mesh().bounds, pixel, pen);
-        for (stroke::StrokeSamples& trace : stroke::draw_with_pointer(std::move(pointer), aims)) {
+        std::vector<stroke::StrokeSamples> drawn_traces = stroke::draw_with_pointer(std::move(pointer), aims);
+        if (drawn_traces.empty())
+            console.note(fmt::format("warning: stroke {}{} never aims at the front of the model and is left out",
+                                     number, entry.label.empty() ? "" : " (" + entry.label + ")"));
+        for (stroke::StrokeSamples& trace : drawn_traces) {
             stroke::PaintStroke drawn = *flat;
             drawn.trace = std::move(trace);
             // The poses have them already.
@@ -395,7 +401,10 @@ int paint(const Paint& a, const StrokeSource& source) {
     }
     const double prepared = seconds_since(start);
     prepare_strokes(strokes, painting, a, console);
-    if (a.hand.as_pointer) strokes = draw_with_pointer(strokes, painting, a.hand.pixel_mm * kMillimetre);
+    if (a.hand.as_pointer) {
+        const VisibleParts shown(model, parts);
+        strokes = draw_with_pointer(strokes, painting, *model.query, a.hand.pixel_mm * kMillimetre, console);
+    }
     check_sizes(strokes, painting, model, a);
     std::optional<io::Project> project = output_project(a, in_place, before.get(), outputs.frame, painting, strokes);
     Painted painted = paint_strokes(strokes, painting, project, a, console, start);

@@ -26,9 +26,11 @@ void prepare_strokes(std::vector<stroke::JournalEntry>& strokes, stroke::Documen
                      Console& console);
 
 /// Returns the strokes with each flat one of a hand replaced by those in space that the studio's pointer makes of it.
-/// `pixel`: metres at the model. Drawings with a stencil stay.
+/// `surface`: of the parts that are not hidden; `pixel`: metres at the model. Drawings with a stencil and strokes on
+/// the palette stay. Strokes that never aim at the front of the surface are left out, and named.
 std::vector<stroke::JournalEntry> draw_with_pointer(const std::vector<stroke::JournalEntry>& strokes,
-                                                    stroke::Document& painting, double pixel);
+                                                    stroke::Document& painting, const mesh::SurfaceQuery& surface,
+                                                    double pixel, Console& console);
 
 /// Throws `Error` for strokes that cannot be of this model's size.
 void check_sizes(const std::vector<stroke::JournalEntry>& strokes, stroke::Document& painting,

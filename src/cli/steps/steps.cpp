@@ -241,6 +241,8 @@ std::vector<stroke::JournalEntry> load_strokes(const Paint& a, Console& console)
     std::uint64_t n_groups = 0;
     std::set<std::string> reported;  // a file that is painted twice is reported once
     for (const fs::path& file : a.strokes) {
+        if (a.hand.as_pointer && lower_extension(file).starts_with(".svg"))
+            throw UsageError(file.string() + ": a drawing is no recording of a hand, which --as-pointer takes");
         const std::size_t first = strokes.size();
         const io::InkmlOptions reading{.actions = true, .note = [&](const Message& line) {
                                            const std::string text = file.string() + ": " + line.text();

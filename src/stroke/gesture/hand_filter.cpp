@@ -142,6 +142,9 @@ StrokeSample pull(String& s, const StrokeSample& hand, double length) {
     s.travel += glm::length(hand.position - s.hand);
     s.tip = drag_string(s.tip, s.hand, hand.position, length);
     s.hand = hand.position;
+    // Of a hand that rests the first and the last are enough.
+    const std::size_t n = s.past.size();
+    if (n >= 2 && s.past[n - 2].travel == s.travel && s.past[n - 1].travel == s.travel) s.past.pop_back();
     s.past.push_back({s.travel, hand.pressure, hand.tilt, hand.roll});
     const String::Grip grip = grip_at(s, s.travel - glm::distance(s.tip, s.hand));
     StrokeSample out = hand;

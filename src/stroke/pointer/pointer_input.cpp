@@ -293,12 +293,19 @@ void PointerInput::set_down(std::vector<StrokeStep>& steps) {
     steps.push_back(std::move(step));
 }
 
-// Returns the place of the tip, and gives the aim the pen's pressure and tilt of that place.
+// Returns the place of the tip, and gives the aim the pen's pressure and tilt of that place. Where the tip rests, a pen
+// presses and turns it as it is now.
 Vec3 PointerInput::pull_on_string(Aim& aim, const Vec3& hand) {
+    const Vec3 before = steadying_.string.tip;
+    const bool began = steadying_.string.started;
     const StrokeSample tip =
         pull(steadying_.string,
              {.position = hand, .pressure = aim.pressure, .tilt = aim.tilt.value_or(settings_.tilt), .roll = aim.turn},
              settings_.string);
+    if (began && tip.position == before) {
+        aim.pressure = std::max(aim.pressure, tip.pressure);
+        return tip.position;
+    }
     if (aim.pressure >= 0) aim.pressure = tip.pressure;
     if (aim.tilt) aim.tilt = tip.tilt;
     aim.turn = tip.roll;

@@ -33,12 +33,13 @@ struct StrokeStep {
 /// Turns a cursor into the holder of a brush.
 ///
 /// Position: the cursor's point on the surface, pulled on a string (`pull`) and smoothed (`filter`); pressure and tilt
-/// of a pen stay at their place on its path, and where a pen leaves, the tip catches up. Pressure: a pen's, or by speed
-/// and dwell (`pressure_goal`; a fast mouse presses less, a resting one more). The brush lands and lifts gradually. It
-/// crosses gaps and grooves narrower than the tuft, such as shut lines, without dipping into them. Where the cursor
-/// leaves the model or jumps over an edge of its outline, the brush lifts and begins a new stroke behind it, lightly at
-/// first. It stays on the side of the surface on which it was set down: a wall that shows its back through a hole is
-/// not gone to, and nothing is set down there. The back of a sheet is painted on.
+/// of a pen stay at their place on its path, and where a pen leaves, the tip catches up, but for what the smoothing
+/// keeps it behind. A tip that rests on a slack string is pressed as the pen presses by then. Pressure: a pen's, or by
+/// speed and dwell (`pressure_goal`; a fast mouse presses less, a resting one more). The brush lands and lifts
+/// gradually. It crosses gaps and grooves narrower than the tuft, such as shut lines, without dipping into them. Where
+/// the cursor leaves the model or jumps over an edge of its outline, the brush lifts and begins a new stroke behind it,
+/// lightly at first. It stays on the side of the surface on which it was set down: a wall that shows its back through a
+/// hole is not gone to, and nothing is set down there. The back of a sheet is painted on.
 ///
 /// With `clean_ends` a stroke without pen pressure has ink from where the button went down to where it came up. The
 /// direction of the stroke must be known first: the brush is set down once the cursor has moved three pixels, rested,
