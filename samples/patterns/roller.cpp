@@ -83,7 +83,7 @@ void roll(const stroke::Model& model, ink::Canvas& canvas, const std::vector<Con
                 }
                 f.coverage[std::size_t(j) * f.width + k] = static_cast<std::uint8_t>(255 * sum / (kPoints * kPoints));
             }
-        jobs = footprint::plan_stamp(model.surface(), f, {}, options, scratch, std::move(jobs));
+        jobs = footprint::plan_stamp(model.surface(), f, {}, options, {scratch, std::move(jobs)});
         footprint::choose_mode(jobs, true, options);
         for (const footprint::TileJob& job : jobs.tiles) {
             if (!footprint::evaluate_tile(model.texels, jobs, job, unpacked, exposure)) continue;
