@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "core/random.h"
@@ -22,6 +24,7 @@ atlas::TexelMap disc_map(std::uint32_t size, double radius) {
     map.tiles_per_side = (size + 15) / 16;
     map.texel_size = 1e-4;
     map.slot_of_tile.assign(std::size_t{map.tiles_per_side} * map.tiles_per_side, kNone);
+    const auto tiles = std::make_shared<std::vector<atlas::TexelTile>>();
     for (std::uint32_t tile = 0; tile < map.slot_of_tile.size(); ++tile) {
         auto made = atlas::TexelTile{};
         bool any = false;
@@ -34,10 +37,11 @@ atlas::TexelMap disc_map(std::uint32_t size, double radius) {
             any |= inside;
         }
         if (!any) continue;
-        map.slot_of_tile[tile] = static_cast<std::uint32_t>(map.tiles.size());
+        map.slot_of_tile[tile] = static_cast<std::uint32_t>(tiles->size());
         map.tile_of_slot.push_back(tile);
-        map.tiles.push_back(made);
+        tiles->push_back(made);
     }
+    map.tiles = {tiles, std::span<const atlas::TexelTile>(*tiles)};
     return map;
 }
 

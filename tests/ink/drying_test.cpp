@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <span>
+
 #include "core/random.h"
 #include "core/system/parallel.h"
 #include "ink/composite/composite.h"
@@ -127,8 +130,9 @@ TEST(Drying, PastTheLastFilmTheLowestMergeAndNothingIsLost) {
 
 TEST(Drying, AllAtOnceTakesTheLiquidAndClosesEverything) {
     atlas::TexelMap map;
-    map.tiles.resize(40);
-    for (atlas::TexelTile& tile : map.tiles) tile.area.fill(1e-8f);
+    const auto tiles = std::make_shared<std::vector<atlas::TexelTile>>(40);
+    for (atlas::TexelTile& tile : *tiles) tile.area.fill(1e-8f);
+    map.tiles = {tiles, std::span<const atlas::TexelTile>(*tiles)};
     const auto dried = [&](int threads) {
         Canvas canvas = canvas_of(40);
         for (std::uint32_t slot = 0; slot < 40; slot += 3) {

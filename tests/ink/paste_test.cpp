@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <span>
 
 #include "core/random.h"
 #include "ink/exchange/stir.h"
@@ -189,11 +191,12 @@ TwoTiles two_tiles(bool seam) {
     out.map.slot_of_tile[0] = 0;
     out.map.slot_of_tile[second] = 1;
     out.map.tile_of_slot = {0, second};
-    out.map.tiles.resize(2);
-    for (atlas::TexelTile& tile : out.map.tiles) {
-        for (float& a : tile.area) a = 1e-8f;
-        for (std::uint8_t& p : tile.cluster) p = 0;
+    const auto tiles = std::make_shared<std::vector<atlas::TexelTile>>(2);
+    for (atlas::TexelTile& tile : *tiles) {
+        tile.area.fill(1e-8f);
+        tile.cluster.fill(0);
     }
+    out.map.tiles = {tiles, std::span<const atlas::TexelTile>(*tiles)};
     out.seams.start = {0, 0, 0};
     if (!seam) return out;
     for (const std::uint32_t slot : {0u, 1u}) {
