@@ -21,6 +21,7 @@ namespace tuft::io {
 namespace {
 
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
 namespace fs = std::filesystem;
@@ -69,7 +70,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 mesh::Surface surface_of(const fs::path& path) {
-    return mesh::build_surface(read_model(path), {.metres_per_unit = metres_per_unit_of(path).value()});
+    return mesh::build_surface(read_model(path), {.metres_per_unit = metres_per_unit_of(path).value_or(1)});
 }
 
 Box bounds_of(const mesh::PolygonSoup& soup) {
@@ -174,7 +175,11 @@ TEST(ForeignFormats, AreOfMetresAndKnownByTheirExtensionInAnyCase) {
         EXPECT_TRUE(is_model_file(name)) << name;
         EXPECT_EQ(metres_per_unit_of(name), 1.0) << name;
     }
-    for (const char* name : {"a.obj", "a.stl"}) EXPECT_EQ(metres_per_unit_of(name), std::nullopt) << name;
+    // VRML is in metres by its standard, CAD writes it in millimetres; its axes are fixed.
+    for (const char* name : {"a.obj", "a.stl", "a.wrl", "a.VRML"})
+        EXPECT_EQ(metres_per_unit_of(name), std::nullopt) << name;
+    EXPECT_TRUE(fixes_up("a.wrl"));
+    EXPECT_FALSE(fixes_up("a.obj"));
     EXPECT_FALSE(is_model_file("a.blend"));
 }
 
@@ -269,6 +274,49 @@ TEST(ForeignFormats, VrmlIsReadInItsSecondVersionAndRefusedWithTheLine) {
     std::string deep = "#VRML V2.0 utf8\n";
     for (int i = 0; i < 300'000; ++i) deep += "Group { children ";
     EXPECT_THAT(fault_of(folder.write("deep.wrl", deep)), HasSubstr("256 deep"));
+}
+
+/// A face at a height z of the file.
+std::string face(int z, const std::string& coord = "") {
+    const std::string at = " " + std::to_string(z) + " ";
+    return "Shape { geometry IndexedFaceSet { coord " + coord + " Coordinate { point [ 0 0" + at + "1 0" + at + "0 1" +
+           at + "] } coordIndex [ 0 1 2 ] } }";
+}
+
+/// The heights z of the faces' points, in the order of the file.
+std::vector<double> heights_of(const Folder& folder, const std::string& body) {
+    const mesh::PolygonSoup soup = read_model(folder.write("a.wrl", "#VRML V2.0 utf8\n" + body));
+    std::vector<double> z;
+    for (std::size_t i = 0; i < soup.corners.size(); i += 3) z.push_back(-soup.points[soup.corners[i]].y);
+    return z;
+}
+
+TEST(ForeignFormats, VrmlEndsACommentWithEitherEndOfLine) {
+    const Folder folder;
+    EXPECT_THAT(heights_of(folder, "# a comment\r" + face(2) + "\r"), ElementsAre(2));
+    EXPECT_THAT(fault_of(folder.write("b.wrl", "#VRML V2.0 utf8\r\n#\rGroup { children \"open }")),
+                HasSubstr("line 3"));
+    EXPECT_EQ(read_model(folder.write("mark.txt", "\xef\xbb\xbf#VRML V2.0 utf8\n" + face(2))).n_polygons(), 1u);
+}
+
+TEST(ForeignFormats, VrmlCountsAmongTheChoicesOfASwitchItsChildrenAlone) {
+    const Folder folder;
+    const std::string choices = "choice [ " + face(1) + face(2) + " ] }";
+    EXPECT_THAT(heights_of(folder, "Switch { PROTO P [ ] { } whichChoice 0 " + choices), ElementsAre(1));
+    EXPECT_THAT(heights_of(folder, "Switch { metadata MetadataString { } whichChoice 1 " + choices), ElementsAre(2));
+    EXPECT_THAT(heights_of(folder, "Switch { whichChoice 1 choice [ USE nothing " + face(3) + " ] }"), ElementsAre(3));
+}
+
+TEST(ForeignFormats, VrmlUsesTheNodeOfTheNameWhereverItWasDefined) {
+    const Folder folder;
+    const std::string use = "Shape { geometry IndexedFaceSet { coord USE c coordIndex [ 0 1 2 ] } }";
+    EXPECT_THAT(heights_of(folder, "Collision { proxy " + face(4, "DEF c") + " children [ " + use + " ] }"),
+                ElementsAre(4));
+    // A name of the file is not taken for the second node of another name.
+    EXPECT_THAT(heights_of(folder, face(1, "DEF c_2") + face(2, "DEF c") + face(3, "DEF c") + use),
+                ElementsAre(1, 2, 3, 3));
+    EXPECT_THAT(heights_of(folder, face(5, "DEF c") + "Shape { geometry TriangleSet { coord USE c } }"),
+                ElementsAre(5, 5));
 }
 
 // A path in a file leads nowhere but into its folder.

@@ -102,11 +102,11 @@ void frame_rows(Ui& ui, const Inspected& in, FileFrame& frame) {
                 : frame.unit == guess ? ui.tr("guessed from the size")
                                       : std::string(ui.tr("guessed")) + ": " + guess);
     name_row(ui, "Upward axis");
-    std::string up = frame.y_up || in.unit_fixed ? "y" : "z";
-    ImGui::BeginDisabled(in.unit_fixed);
+    std::string up = frame.y_up || in.up_fixed ? "y" : "z";
+    ImGui::BeginDisabled(in.up_fixed);
     if (ui.combo("Up", up, axes, 90)) frame.y_up = up == "y";
     ImGui::EndDisabled();
-    if (in.unit_fixed) note_beside(ui.tr("the format says so"));
+    if (in.up_fixed) note_beside(ui.tr("the format says so"));
 }
 
 /// Groups and chord tolerance of a CAD file. Returns true when it is to be read anew.
@@ -169,7 +169,7 @@ void open_dialog(Session& s) {
     const mesh::MeshSummary& m = in.summary;
     const double factor = metres_per(s.project.options.frame.unit).value_or(m.metres_per_unit) / m.metres_per_unit;
     Vec3 size = m.bounds.size() * factor * 1e3;
-    if (s.project.options.frame.y_up && !in.unit_fixed) std::swap(size.y, size.z);
+    if (s.project.options.frame.y_up && !in.up_fixed) std::swap(size.y, size.z);
     fact(ui, "File", in.path.filename().string());
     fact(ui, "Size", print("%.1f \xc3\x97 %.1f \xc3\x97 %.1f mm", size.x, size.y, size.z));
     fact(ui, "Triangles", grouped(m.n_triangles));

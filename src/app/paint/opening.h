@@ -23,6 +23,7 @@ struct Inspected {
     mesh::MeshSummary summary;     ///< lengths in metres, by the guessed unit
     std::vector<Message> defects;  ///< found and repaired, one line each
     bool unit_fixed = false;       ///< the format defines the unit
+    bool up_fixed = false;         ///< and its axes
 };
 
 /// Choices of the opening dialog.

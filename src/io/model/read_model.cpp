@@ -58,6 +58,7 @@ bool is_iges_line(std::string_view bytes) {
 
 /// Formats that say what they are in their first bytes.
 std::optional<Format> by_content(std::string_view bytes) {
+    if (bytes.starts_with("\xef\xbb\xbf#")) bytes.remove_prefix(3);  // the mark of UTF-8
     if (bytes.starts_with("glTF")) return Format::glb;
     if (bytes.starts_with("Kaydara FBX")) return Format::fbx;
     if (bytes.starts_with("#VRML V") || bytes.starts_with("#X3D V")) return Format::vrml;
@@ -129,10 +130,16 @@ mesh::PolygonSoup read_model(const std::filesystem::path& path, const CadReading
     return soup;
 }
 
-std::optional<double> metres_per_unit_of(const std::filesystem::path& path) {
+bool fixes_up(const std::filesystem::path& path) {
     const std::string extension = lower_extension(path);
     const bool plain = extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off";
-    return is_model_file(path) && !plain ? std::optional(1.0) : std::nullopt;
+    return is_model_file(path) && !plain;
+}
+
+std::optional<double> metres_per_unit_of(const std::filesystem::path& path) {
+    const std::string extension = lower_extension(path);
+    const bool is_vrml = extension == ".wrl" || extension == ".vrml";
+    return fixes_up(path) && !is_vrml ? std::optional(1.0) : std::nullopt;
 }
 
 }  // namespace tuft::io

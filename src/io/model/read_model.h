@@ -25,8 +25,8 @@ bool is_model_file(const std::filesystem::path& path);
 /// URIs and from files inside the model's folder.
 ///
 /// FBX, DAE, 3MF, X3D and VRML: all faces with their node transforms, in metres, z up, by the file's unit and axes
-/// (read_import.h, read_3mf.h, read_x3d.h, read_vrml.h). STEP and IGES: all faces of all bodies, as triangles by `cad`,
-/// in metres.
+/// (read_import.h, read_3mf.h, read_x3d.h, read_vrml.h); VRML, which stores no unit, in that of the file. STEP and
+/// IGES: all faces of all bodies, as triangles by `cad`, in metres.
 ///
 /// Colours: in glTF the base colour (factor, picture of UV set 0, COLOR_0); in OBJ `Kd` and `map_Kd`; in PLY
 /// `TextureFile` and the colours of faces and vertices (materials.h).
@@ -36,7 +36,11 @@ mesh::PolygonSoup read_model(const std::filesystem::path& path, const CadReading
 bool is_cad_file(const std::filesystem::path& path);
 
 /// Returns the metres per unit of what `read_model` returns, where the format defines them: 1 for glTF, FBX, DAE, 3MF,
-/// X3D, VRML, STEP and IGES; else nothing.
+/// X3D, STEP and IGES; else nothing. VRML 2.0 is written in metres by the standard and in millimetres by CAD.
 std::optional<double> metres_per_unit_of(const std::filesystem::path& path);
+
+/// Returns true where the format defines its axes, so that `read_model` has turned the model z up: for all but OBJ,
+/// PLY, STL and OFF.
+bool fixes_up(const std::filesystem::path& path);
 
 }  // namespace tuft::io

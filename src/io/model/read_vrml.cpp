@@ -18,6 +18,7 @@ using pugi::xml_node;
 
 constexpr int kDeepestVrml = 256;
 constexpr std::size_t kMostVrmlNodes = 4'000'000;
+constexpr std::size_t kMostVrmlFields = 16'000'000;
 constexpr std::size_t kLongestName = 1000;
 constexpr std::size_t kLongestInMessage = 40;
 
@@ -52,14 +53,16 @@ class Words {
         take();
     }
     [[noreturn]] void fail(const Message& fault) const {
-        const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
-        throw Error(file_, Message("line {}: {}", static_cast<long>(line), fault));
+        long line = 1;
+        for (std::size_t i = 0; i < at_; ++i)  // a line ends with LF, CR or both
+            if (text_[i] == '\n' || (text_[i] == '\r' && (i + 1 == text_.size() || text_[i + 1] != '\n'))) ++line;
+        throw Error(file_, Message("line {}: {}", line, fault));
     }
 
   private:
     void find() {
         while (at_ < text_.size() && (is_space(text_[at_]) || text_[at_] == '#'))
-            at_ = text_[at_] == '#' ? std::min(text_.find('\n', at_), text_.size()) : at_ + 1;
+            at_ = text_[at_] == '#' ? std::min(text_.find_first_of("\r\n", at_), text_.size()) : at_ + 1;
         std::size_t end = at_;
         if (end < text_.size() && text_[end] == '"') {
             for (++end; end < text_.size() && text_[end] != '"'; ++end)
@@ -179,7 +182,10 @@ class TreeBuilder {
         if (++n_nodes_ > kMostVrmlNodes) words_.fail("there are more than four million nodes");
         if (n_nodes_ % 4096 == 0) check_interrupt();
         const std::string first = name();
-        if (first == "NULL") return;
+        if (first == "NULL") {
+            parent.append_child(pugi::node_element);  // counts among the children of a switch
+            return;
+        }
         if (first == "USE") {
             const std::string used = name();
             add_use(parent, used);
@@ -190,9 +196,9 @@ class TreeBuilder {
         const std::string kind = first == "DEF" ? name() : first;
         xml_node node = parent.append_child(kind.c_str());
         if (!defined.empty()) {
-            // A later node of the same name takes it over; the tree knows each name once.
+            // A later node of the same name takes it over; the tree knows each name once. No name of a file has a '#'.
             Named& named = named_[defined];
-            named = {kind, named.times == 0 ? defined : defined + "_" + std::to_string(named.times + 1),
+            named = {kind, named.times == 0 ? defined : defined + "#" + std::to_string(named.times + 1),
                      named.times + 1};
             node.append_attribute("DEF") = named.name.c_str();
         }
@@ -207,11 +213,16 @@ class TreeBuilder {
     /// In XML a node that is used has the kind of the one that it stands for.
     void add_use(xml_node& parent, const std::string& used) {
         const auto named = named_.find(used);
-        if (named == named_.end()) return;
+        if (named == named_.end()) {
+            parent.append_child(pugi::node_element);  // counts among the children of a switch
+            return;
+        }
         parent.append_child(named->second.kind.c_str()).append_attribute("USE") = named->second.name.c_str();
     }
 
     void add_field(xml_node& node, int depth) {
+        if (++n_fields_ > kMostVrmlFields) words_.fail("there are more than sixteen million fields");
+        if (n_fields_ % 4096 == 0) check_interrupt();
         if (add_declaration(node)) return;
         std::string field = name();
         if (field == "eventIn" || field == "eventOut" || field == "inputOnly" || field == "outputOnly") {
@@ -225,11 +236,10 @@ class TreeBuilder {
             field = name();
         }
         if (words_.peek() == "IS") return skip_is();
-        // What a collision is computed with instead of the shape.
-        xml_node left_out;
-        pugi::xml_document aside;
-        if (field == "proxy") left_out = aside.append_child("proxy");
-        add_value(left_out ? left_out : node, field, depth);
+        // What a collision is computed with instead of the shape is not seen, but its nodes may be used elsewhere.
+        xml_node proxy;
+        if (field == "proxy") proxy = head_.append_child("proxy");
+        add_value(proxy ? proxy : node, field, depth);
     }
 
     void skip_is() {
@@ -271,14 +281,15 @@ class TreeBuilder {
     Words words_;
     xml_node head_;
     std::map<std::string, Named> named_;
-    std::size_t n_nodes_ = 0;
+    std::size_t n_nodes_ = 0, n_fields_ = 0;
 };
 
 }  // namespace
 
 mesh::PolygonSoup read_vrml(const std::vector<char>& bytes, const std::filesystem::path& path) {
     const std::string file = path.string();
-    const std::string_view text(bytes.data(), bytes.size());
+    std::string_view text(bytes.data(), bytes.size());
+    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // the mark of UTF-8
     if (text.starts_with("\x1f\x8b")) throw Error(file, "is compressed; unpack it with gunzip first");
     if (text.starts_with("#VRML V1.0"))
         throw Error(file, "is VRML 1.0, which tuft does not read; export it as VRML 2.0 (VRML97), X3D or GLB");

@@ -79,6 +79,13 @@ Mat4 transform_of(const xml_node& node) {
            rotation_of(node.attribute("scaleOrientation"), -1) * moved(-centre);
 }
 
+/// The name that a file gives a node; read_vrml.cpp sets "#2" behind the second node of one name.
+std::string name_of(const xml_node& node) {
+    std::string name = node.attribute("DEF").value();
+    std::replace(name.begin(), name.end(), '#', '_');
+    return name;
+}
+
 /// The first text of an MFString, or all of it where there are no quotes.
 std::vector<std::string> strings_of(std::string_view text) {
     std::vector<std::string> out;
@@ -157,7 +164,9 @@ class Reader {
         for (const xml_node& c : node.children()) {
             if (++visited_ > kMostNodes) throw Error(file_, "has more than four million nodes");
             if (visited_ % 4096 == 0) check_interrupt();
-            if ((kind == "Switch" || kind == "LOD") && at++ != chosen) continue;
+            const std::string_view child_kind = c.name();
+            const bool counts = !child_kind.starts_with("Metadata") && child_kind != "ProtoDeclare";
+            if ((kind == "Switch" || kind == "LOD") && counts && at++ != chosen) continue;
             visit_one(target_of(c), world, object, depth);
         }
     }
@@ -171,8 +180,8 @@ class Reader {
             return;
         std::string name = object;
         // Names of groups below a named transform say less than its own.
-        if (const char* own = node.attribute("DEF").value(); *own && (kind == "Transform" || object.empty())) {
-            name = own;
+        if (std::string own = name_of(node); !own.empty() && (kind == "Transform" || object.empty())) {
+            name = std::move(own);
             for (const std::string_view suffix : {"_ifs_TRANSFORM", "_TRANSFORM"})  // of Blender's exporter
                 if (name.ends_with(suffix)) {
                     name.resize(name.size() - suffix.size());
@@ -188,9 +197,9 @@ class Reader {
         const auto key = std::pair(material.hash_value(), picture.hash_value());
         const auto [it, is_new] = materials_.try_emplace(key, static_cast<std::uint32_t>(out_.materials.size()));
         if (!is_new) return it->second;
-        FileMaterial m{.name = material.attribute("DEF").value()};
-        if (m.name.empty()) m.name = appearance.attribute("DEF").value();
-        if (m.name.empty()) m.name = picture.attribute("DEF").value();
+        FileMaterial m{.name = name_of(material)};
+        if (m.name.empty()) m.name = name_of(appearance);
+        if (m.name.empty()) m.name = name_of(picture);
         if (m.name.starts_with("MA_")) m.name.erase(0, 3);  // of Blender's exporter
         if (m.name.empty()) m.name = "material " + std::to_string(out_.materials.size() + 1);
         m.colour = Vec3f(vec3_of(material.attribute("diffuseColor"), Vec3(0.8)));
@@ -224,7 +233,7 @@ class Reader {
     }
 
     /// Of sets of triangles and quads, strips and fans.
-    static Lists faces_of(const xml_node& node, std::string_view kind) {
+    Lists faces_of(const xml_node& node, std::string_view kind) const {
         const bool indexed = kind.starts_with("Indexed");
         const bool strip = kind.find("Strip") != kind.npos, fan = kind.find("Fan") != kind.npos;
         Lists runs;
@@ -232,7 +241,7 @@ class Reader {
             runs = lists_of(node.attribute("index").value());
         } else {
             // The points in the order of the file, in runs of so many each.
-            const std::size_t n = numbers_of(node.child("Coordinate").attribute("point").value()).size() / 3;
+            const std::size_t n = numbers_of(child(node, "Coordinate").attribute("point").value()).size() / 3;
             std::vector<double> counts = numbers_of(node.attribute(strip ? "stripCount" : "fanCount").value());
             if (!strip && !fan) counts = {static_cast<double>(n)};
             std::size_t at = 0;

@@ -11,8 +11,8 @@
 #include "mesh/read/polygon_soup.h"
 
 /// \file
-/// Scene of one file, as the readers of FBX, DAE, 3MF, X3D, STEP and IGES fill it, and its conversion into a polygon
-/// soup. Inside `io` only. Any thread.
+/// Scene of one file, as the readers of FBX, DAE, 3MF, X3D, VRML, STEP and IGES fill it, and its conversion into a
+/// polygon soup. Inside `io` only. Any thread.
 namespace tuft::io {
 
 /// A material of the file.
