@@ -15,8 +15,9 @@
 namespace tuft::decal {
 namespace {
 
-constexpr double kInside = -1e-9;  // barycentric weights of points on an edge, rounding
-constexpr double kSlack = 1e-9;    // metres, more than rounding changes a distance
+constexpr double kInside = -1e-9;        // barycentric weights of points on an edge, rounding
+constexpr double kSlack = 1e-9;          // metres, more than rounding changes a distance
+constexpr std::size_t kMostListed = 32;  // cells that list a triangle, on average
 
 /// Walks over the seams and lays down triangle after triangle.
 class Strip {
@@ -201,19 +202,31 @@ SurfaceLocator::SurfaceLocator(const PrintSurface& surface) : surface_(surface) 
     const Vec2 size = hi - lo_;
     const auto n = static_cast<double>(std::max<std::size_t>(surface.faces.size(), 1));
     cell_ = std::max({std::sqrt(size.x * size.y / n), std::max(size.x, size.y) / n, 1e-9});
-    width_ = static_cast<std::size_t>(size.x / cell_) + 1;
-    height_ = static_cast<std::size_t>(size.y / cell_) + 1;
     // A point that counts as inside may lie a little off its triangle.
-    const auto each_cell = [&](std::size_t t, auto&& use) {
+    const auto cells_of = [&](std::size_t t) {
         const auto& f = surface.faces[t];
         const Vec2 a = surface.flat[f[0]], b = surface.flat[f[1]], c = surface.flat[f[2]];
         const Vec2 from = glm::min(a, glm::min(b, c)), to = glm::max(a, glm::max(b, c));
         const Vec2 around = -2 * kInside * (to - from);
-        const std::size_t first = cell_of(from.x - around.x, from.y - around.y);
-        const std::size_t last = cell_of(to.x + around.x, to.y + around.y);
+        return std::pair(cell_of(from.x - around.x, from.y - around.y), cell_of(to.x + around.x, to.y + around.y));
+    };
+    const auto each_cell = [&](std::size_t t, auto&& use) {
+        const auto [first, last] = cells_of(t);
         for (std::size_t y = first / width_; y <= last / width_; ++y)
             for (std::size_t x = first % width_; x <= last % width_; ++x) use(y * width_ + x);
     };
+    // Boxes of needles overlap in many cells: in wider ones they are fewer.
+    const std::size_t most = kMostListed * surface.faces.size();
+    for (;; cell_ *= 2) {
+        width_ = static_cast<std::size_t>(size.x / cell_) + 1;
+        height_ = static_cast<std::size_t>(size.y / cell_) + 1;
+        std::size_t listed = 0;
+        for (std::size_t t = 0; t < surface.faces.size() && listed <= most; ++t) {
+            const auto [first, last] = cells_of(t);
+            listed += (last / width_ - first / width_ + 1) * (last % width_ - first % width_ + 1);
+        }
+        if (listed <= most) break;
+    }
     start_.assign(width_ * height_ + 1, 0);
     for (std::size_t t = 0; t < surface.faces.size(); ++t) each_cell(t, [&](std::size_t i) { ++start_[i + 1]; });
     std::partial_sum(start_.begin(), start_.end(), start_.begin());

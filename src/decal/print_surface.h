@@ -36,12 +36,15 @@ struct ModelPoint {
 /// there is none. Cost: all triangles are tested.
 std::optional<ModelPoint> locate(const PrintSurface& surface, const Vec2& p);
 
-/// `locate` for many points: triangles in a grid with about as many cells. Finds the same point.
+/// `locate` for many points: triangles in a grid with about as many cells, or fewer where they are needles. Finds the
+/// same point.
 class SurfaceLocator {
   public:
     /// `surface` must outlive it.
     explicit SurfaceLocator(const PrintSurface& surface);
     std::optional<ModelPoint> locate(const Vec2& p) const;
+    /// Number of triangles that the cells list, at most 32 times as many as there are.
+    std::size_t n_listed() const { return triangles_.size(); }
 
   private:
     std::size_t cell_of(double x, double y) const;
