@@ -26,13 +26,6 @@ Grid grid_over(const Box2& box, double texel) {
     return grid;
 }
 
-/// Film units of each pigment on a pixel; returns their sum.
-double amounts_at(const PrintImage& image, std::span<const float> full, std::size_t i, std::vector<double>& amounts) {
-    double sum = 0;
-    for (std::size_t m = 0; m < amounts.size(); ++m) sum += amounts[m] = image.plates[m][i] / 255.0 * full[m];
-    return sum;
-}
-
 double difference(std::span<const double> a, std::span<const double> b) {
     double sum = 0;
     for (std::size_t m = 0; m < a.size(); ++m) sum += std::abs(a[m] - b[m]);
@@ -58,35 +51,35 @@ Region find_ink_area(const PrintSurface& surface, const CoverageFn& coverage, co
     return out;
 }
 
-std::optional<PrintedInk> find_single_ink(const PrintImage& image, std::span<const float> full) {
+std::optional<PrintedInk> find_single_ink(const PaintSamples& samples) {
+    const std::size_t n = samples.cover.size();
+    if (n == 0) return std::nullopt;
+    const std::size_t n_plates = samples.amounts.size() / n;
+    const auto film_at = [&](std::size_t i) { return std::span(samples.amounts).subspan(i * n_plates, n_plates); };
+    std::vector<double> sums(n);
+    for (std::size_t i = 0; i < n; ++i)
+        for (const float amount : film_at(i)) sums[i] += amount;
+    const double thick = kThickFilm * *std::ranges::max_element(sums);
+    if (!(thick > 0)) return std::nullopt;
     PrintedInk ink;
-    ink.mix.assign(image.plates.size(), 0);
-    std::vector<double> amounts(image.plates.size());
-    double thickest = 0;
-    for (std::size_t i = 0; i < image.alpha.size(); ++i)
-        thickest = std::max(thickest, amounts_at(image, full, i, amounts));
-    if (!(thickest > 0)) return std::nullopt;
-    const double thick = kThickFilm * thickest;
-    double weights = 0, differences = 0;
-    for (std::size_t i = 0; i < image.alpha.size(); ++i) {
-        const double sum = amounts_at(image, full, i, amounts);
-        if (sum > 0) {
-            const double weight = std::min(sum, thick);
-            for (std::size_t m = 0; m < amounts.size(); ++m) ink.mix[m] += weight * amounts[m] / sum;
-            weights += weight;
-        }
-        const double cover = image.alpha[i] / 255.0;
-        for (std::size_t c = 0; c < 3; ++c) ink.colour[c] += cover * image.rgb[3 * i + c] / 255.0;
-        ink.weight += cover;
+    ink.mix.assign(n_plates, 0);
+    double weights = 0, differences = 0, covered = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        covered += samples.cover[i];
+        for (std::size_t c = 0; c < 3; ++c) ink.colour[c] += samples.cover[i] * samples.colour[i][c];
+        if (!(sums[i] > 0)) continue;
+        const double weight = std::min(sums[i], thick);
+        for (std::size_t m = 0; m < n_plates; ++m) ink.mix[m] += weight * film_at(i)[m] / sums[i];
+        weights += weight;
     }
-    if (!(ink.weight > 0)) return std::nullopt;
     for (double& part : ink.mix) part /= weights;
-    for (double& c : ink.colour) c /= ink.weight;
-    for (std::size_t i = 0; i < image.alpha.size(); ++i) {
-        const double sum = amounts_at(image, full, i, amounts);
-        if (!(sum > 0)) continue;
-        for (double& a : amounts) a /= sum;
-        differences += std::min(sum, thick) * difference(amounts, ink.mix);
+    for (double& c : ink.colour) c /= covered;
+    ink.weight = covered * samples.area;
+    std::vector<double> mix(n_plates);
+    for (std::size_t i = 0; i < n; ++i) {
+        if (!(sums[i] > 0)) continue;
+        for (std::size_t m = 0; m < n_plates; ++m) mix[m] = film_at(i)[m] / sums[i];
+        differences += std::min(sums[i], thick) * difference(mix, ink.mix);
     }
     if (differences > kOneInk * weights) return std::nullopt;
     return ink;

@@ -19,16 +19,16 @@ namespace tuft::decal {
 Region find_ink_area(const PrintSurface& surface, const CoverageFn& coverage, const Region& film, double bleed,
                      double texel);
 
-/// One ink of a picture.
+/// The one ink of a piece.
 struct PrintedInk {
     std::vector<double> mix;                ///< [n_plates] parts of the pigments, sum 1
-    std::array<double, 3> colour{0, 0, 0};  ///< sRGB 0–1, mean by coverage
-    double weight = 0;                      ///< sum of the coverage, pixels
+    std::array<double, 3> colour{0, 0, 0};  ///< 0–1, coded as `PrintImage::rgb`, mean by coverage
+    double weight = 0;                      ///< covered area, m²
 };
 
-/// Returns the ink of a picture if it has one: the mean of ½ Σ |part − mean part| is at most 2 %, thick film counts no
-/// more than a quarter of the thickest. `full` as in `PrintSource`, for each of the picture's plates.
-std::optional<PrintedInk> find_single_ink(const PrintImage& image, std::span<const float> full);
+/// Returns the ink of a piece if it has one: the mean of ½ Σ |part − mean part| is at most 2 %, thick film counts no
+/// more than a quarter of the thickest.
+std::optional<PrintedInk> find_single_ink(const PaintSamples& samples);
 
 /// Returns whether two mixes differ by at most 2 %.
 bool is_same_mix(std::span<const double> a, std::span<const double> b);

@@ -12,6 +12,7 @@ namespace {
 constexpr double kMostPixels = 268435456;  // 2²⁸
 constexpr int kMostSamples = 4;            // along a side of a pixel
 constexpr std::size_t kMostPlates = 16;
+constexpr double kMostSamplePoints = 4e6;
 
 PrintImage blank_over(const Region& on_page, double pixel) {
     const Box2 box = box_of(on_page);
@@ -221,6 +222,36 @@ PrintImage print_piece(const PrintSurface& surface, const PrintSource& source, c
     });
     drop_islands(image, triangles_under(surface, placement, placed(film, placement), image));
     return image;
+}
+
+PaintSamples sample_paint(const PrintSurface& surface, const PrintSource& source, const Region& film) {
+    PaintSamples samples;
+    const Vec2 size = box_of(film).size();
+    PrintImage grid = blank_over(film, std::max(source.texel, std::sqrt(size.x * size.y / kMostSamplePoints)));
+    const std::vector<std::uint32_t> under = triangles_under(surface, {}, film, grid);
+    const std::size_t n_plates = std::min(source.full.size(), kMostPlates);
+    const auto width = static_cast<std::size_t>(grid.width);
+    std::array<float, kMostPlates> amounts{};
+    samples.area = grid.pixel * grid.pixel;
+    for (std::size_t i = 0; i < under.size(); ++i) {
+        if (under[i] == kNone) continue;
+        const Vec2 p = grid.origin +
+                       grid.pixel * Vec2(static_cast<double>(i % width) + 0.5,
+                                         static_cast<double>(grid.height - 1) - static_cast<double>(i / width) + 0.5);
+        const Weights w = PixelWeights(surface, {}, under[i]).at(p);
+        const std::uint32_t triangle = surface.source[under[i]];
+        const double cover = source.coverage(triangle, w);
+        if (!(cover > 0)) continue;
+        const Vec2 uv = uv_of(source.corner_uvs, triangle, w);
+        std::array<float, 3> rgb;
+        sample(*source.colour, uv, rgb.data());
+        sample(*source.amounts, uv, amounts.data());
+        samples.cover.push_back(static_cast<float>(cover));
+        samples.colour.push_back({rgb[0] / 255, rgb[1] / 255, rgb[2] / 255});
+        samples.amounts.insert(samples.amounts.end(), amounts.begin(),
+                               amounts.begin() + static_cast<std::ptrdiff_t>(n_plates));
+    }
+    return samples;
 }
 
 PrintImage print_strain(const PrintSurface& surface, const PagePlacement& placement, const Region& printed,

@@ -79,6 +79,18 @@ struct PrintImage {
 PrintImage print_piece(const PrintSurface& surface, const PrintSource& source, const PagePlacement& placement,
                        const Region& film, double bleed, double pixel);
 
+/// Paint at points of a piece, film units and coded colours as they are in the maps.
+struct PaintSamples {
+    double area = 0;                           ///< m² of film for each
+    std::vector<float> cover;                  ///< [n] above 0, at most 1
+    std::vector<std::array<float, 3>> colour;  ///< [n] 0–1
+    std::vector<float> amounts;                ///< [n n_plates]
+};
+
+/// Samples the paint within `film` (in the panel's plane) a texel apart, wider where that were more than four million
+/// points. Points without paint are left out.
+PaintSamples sample_paint(const PrintSurface& surface, const PrintSource& source, const Region& film);
+
 /// Draws the strain of a piece in colours of `strain_colour`.
 PrintImage print_strain(const PrintSurface& surface, const PagePlacement& placement, const Region& printed,
                         double pixel, double limit);

@@ -326,13 +326,14 @@ void draw_paint(const PrintSource& source, const SheetOptions& options, Piece& p
         for (std::size_t m = 0; m < source.plates.size(); ++m) add_area(m, source.plates[m]);
         return;
     }
-    if (!options.prints && !options.outlines) return;
-    PrintImage image = print_piece(surface, source, piece.placement, piece.film, bleed, options.pixel);
-    if (options.outlines) {
-        if (const auto ink = find_single_ink(image, source.full)) return add_area(add_ink(*ink, inks), source.coverage);
-        image.plates.clear();
+    PrintSource picture = source;
+    if (options.outlines && source.amounts) {
+        if (const auto ink = find_single_ink(sample_paint(surface, source, piece.film)))
+            return add_area(add_ink(*ink, inks), source.coverage);
+        picture.amounts = nullptr;
     }
-    if (options.prints) page.prints.push_back(std::move(image));
+    if (options.prints)
+        page.prints.push_back(print_piece(surface, picture, piece.placement, piece.film, bleed, options.pixel));
 }
 
 void draw_pieces(const CutFilm& cut, const PrintSource& source, const SheetOptions& options,

@@ -64,9 +64,10 @@ struct Plate {
 
 /// An ink of `Page::areas`.
 struct SheetInk {
-    std::string name;                       ///< `make_sheet` leaves it empty
-    std::array<double, 3> colour{0, 0, 0};  ///< sRGB 0–1
-    std::vector<double> mix = {};           ///< [n_plates] parts of the pigments, sum 1; empty: those of its plate
+    std::string name;                                ///< `make_sheet` leaves it empty
+    std::array<double, 3> colour{0, 0, 0};           ///< 0–1, coded as `PrintImage::rgb`
+    std::optional<std::array<double, 3>> srgb = {};  ///< 0–1, cut to sRGB; empty: `colour` is
+    std::vector<double> mix = {};  ///< [n_plates] parts of the pigments, sum 1; empty: those of its plate
 };
 
 /// What `make_sheet` left out; see there.

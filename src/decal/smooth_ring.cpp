@@ -72,7 +72,7 @@ Ring catmull_rom(const Ring& ring) {
     return out;
 }
 
-/// Moves a ring outwards until it has an area.
+/// Moves a ring outwards by what its area lacks, spread over its length.
 void restore_area(Ring& ring, double area) {
     const double length = length_of(ring);
     if (!(length > 0)) return;

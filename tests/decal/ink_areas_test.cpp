@@ -133,17 +133,68 @@ TEST(InkAreas, RunOnBeyondTheCutAsFarAsTheBleed) {
 }
 
 TEST(InkAreas, OneInkIsAMixOfOneProportion) {
-    PrintImage image{.width = 4, .height = 1};
-    image.rgb = {10, 20, 30, 10, 20, 30, 10, 20, 30, 255, 255, 255};
-    image.alpha = {255, 255, 255, 0};
-    image.plates = {{200, 100, 50, 0}, {100, 50, 25, 0}};
-    const std::vector<float> full{1, 1};
-    const auto one = find_single_ink(image, full);
+    PaintSamples samples{.area = 1, .cover = {1, 1, 1}, .colour = {}, .amounts = {2, 1, 1, 0.5f, 0.5f, 0.25f}};
+    samples.colour.assign(3, {0.1f, 0.2f, 0.3f});
+    const auto one = find_single_ink(samples);
     ASSERT_TRUE(one);
     EXPECT_NEAR(one->mix[0], 2.0 / 3, 1e-6);
-    EXPECT_NEAR(one->colour[2], 30.0 / 255, 1e-6);
-    image.plates[1] = {0, 50, 100, 0};
-    EXPECT_FALSE(find_single_ink(image, full));
+    EXPECT_NEAR(one->colour[2], 0.3, 1e-6);
+    samples.amounts = {2, 0, 1, 0.5f, 0.5f, 1};
+    EXPECT_FALSE(find_single_ink(samples));
+}
+
+/// The sheet of a square film of 40 mm with a disc of paint in one mix.
+Sheet disc_sheet(float film, const SheetOptions& options) {
+    const mesh::TriangleMesh model =
+        test::grid_mesh(2, 2, false, false, [](double u, double v) { return Vec3(0.04 * u, 0.04 * v, 0); });
+    const std::vector<Vec2f> uvs(3 * model.n_triangles(), Vec2f(0.5f));
+    const ink::AtlasMap<std::uint8_t> colour{1, 3, {200, 30, 40}};
+    const ink::AtlasMap<float> amounts{1, 2, {0.7f * film, 0.3f * film}};
+    const PrintSource source{.corner_uvs = uvs,
+                             .coverage = test::coverage_where(
+                                 model, [](const Vec3& p) { return glm::length(p - Vec3(0.02, 0.02, 0)) < 0.01; }),
+                             .colour = &colour,
+                             .amounts = &amounts,
+                             .full = {8, 8},  // somewhere else
+                             .texel = 0.5 * kMm};
+    return make_sheet(model, source, options);
+}
+
+// In steps of 255 of the most there is, the parts of so thin a film were 1 and 0.
+TEST(InkAreas, ThinFilmOfOneMixIsOneInk) {
+    const Sheet sheet = disc_sheet(0.04f, {.outlines = true});
+    ASSERT_EQ(sheet.inks.size(), 1u);
+    EXPECT_NEAR(sheet.inks[0].mix[1], 0.3, 1e-6);
+    EXPECT_NEAR(sheet.inks[0].colour[0], 200 / 255.0, 1e-6);
+    EXPECT_TRUE(sheet.pages[0].prints.empty());
+}
+
+// Pictures of this film would have more than 2^28 pixels; lines alone need none.
+TEST(InkAreas, AreFoundWithoutThePixelsOfAPicture) {
+    const Sheet sheet = disc_sheet(1, {.pixel = 1e-6, .prints = false, .outlines = true});
+    ASSERT_EQ(sheet.pages[0].areas.size(), 1u);
+    const double truth = test::kPi * 0.01 * 0.01;
+    EXPECT_NEAR(area_of(sheet.pages[0].areas[0].region), truth, 1e-2 * truth);  // texels of 0.5 mm
+}
+
+// Triangles from one corner: the box of each holds most of the film.
+TEST(InkAreas, PointsUnderNeedlesAreFoundInFewCells) {
+    constexpr std::uint32_t n = 2000;
+    PrintSurface fan;
+    fan.flat.push_back({0, 0});
+    for (std::uint32_t i = 0; i <= n; ++i) {
+        const double angle = 2 * test::kPi * i / n;
+        fan.flat.push_back({std::cos(angle), std::sin(angle)});
+        if (i == 0) continue;
+        fan.faces.push_back({0, i, i + 1});
+        fan.source.push_back(i - 1);
+    }
+    fan.n_own = n;
+    fan.weights.assign(n, {Weights{1, 0, 0}, Weights{0, 1, 0}, Weights{0, 0, 1}});
+    const SurfaceLocator locator(fan);
+    EXPECT_LE(locator.n_listed(), std::size_t{32} * n);  // 160 in cells of the mean area
+    for (const Vec2 p : {Vec2(0.3, 0.2), Vec2(-0.7, 0.1), Vec2(0.01, -0.9)})
+        EXPECT_EQ(locator.locate(p)->triangle, locate(fan, p)->triangle);
 }
 
 TEST(InkAreas, EachPlateOfASheetHasItsOwn) {
