@@ -73,7 +73,7 @@ TEST_F(Decals, OutlinesWhatIsPaintedInOneInk) {
     const nlohmann::json j = nlohmann::json::parse(dxf.out);
     EXPECT_EQ(j.at("inks"), nlohmann::json{"carbon black"});
     for (const nlohmann::json& piece : j.at("pieces")) EXPECT_TRUE(piece.at("outlined"));
-    EXPECT_NE(read(path("ink.dxf")).find("Ink carbon black"), std::string::npos);
+    EXPECT_NE(read(path("ink.dxf")).find("Ink_carbon_black"), std::string::npos);
     const test::Ran svg = tuft("decals " + project + " -o " + path("ink.svg") + " --outlines --plates");
     ASSERT_EQ(svg.status, 0) << svg.err;
     EXPECT_EQ(read(path("ink.svg")).find("<image"), std::string::npos);

@@ -225,7 +225,7 @@ TEST_F(SheetFiles, AreasOfOneInkAreFilledPathsWithTheirHoles) {
     }
     const std::string svg = svg_text(outlined(false), 0);
     EXPECT_NE(svg.find("id=\"Ink cobalt-underglaze\""), std::string::npos);
-    EXPECT_NE(svg.find("id=\"Ink iron _red_\""), std::string::npos);  // no characters that DXF forbids
+    EXPECT_NE(svg.find("id=\"Ink iron _red_\""), std::string::npos);  // no characters that CAD forbids
     EXPECT_NE(svg.find("fill=\"#336699\""), std::string::npos);
     EXPECT_NE(svg.find("M40.0000,42.6000 L40.0000,32.6000"), std::string::npos);
 }
@@ -283,9 +283,25 @@ TEST_F(SheetFiles, DxfHasAClosedPolylineForEachBorderOfAnInk) {
         if (pairs[i] == std::pair<int, std::string>{0, "POLYLINE"} && pairs[i + 6].second == "1")
             ++closed[pairs[i + 1].second];
     }
-    EXPECT_EQ(closed["Ink cobalt-underglaze"], 2);
-    EXPECT_EQ(closed["Ink iron _red_"], 1);
-    EXPECT_EQ(std::count(layers.begin(), layers.end(), "Ink iron _red_"), 1);
+    EXPECT_EQ(closed["Ink_cobalt-underglaze"], 2);
+    EXPECT_EQ(closed["Ink_iron__red_"], 1);
+    EXPECT_EQ(std::count(layers.begin(), layers.end(), "Ink_iron__red_"), 1);
+}
+
+// R12 knows at most 31 of A-Z 0-9 $ - _ in the name of a layer, and no capitals.
+TEST_F(SheetFiles, EachInkHasALayerOfItsOwnByTheRulesOfTheFormat) {
+    decal::Sheet sheet;
+    for (const char* name : {"indigo 70 + gamboge 30", "A", "a", "a/b", "a:b", "墨", "朱",
+                             "carbon black 50 + burnt sienna 30 + white 20", "carbon black 50 + burnt sienna 20"})
+        sheet.inks.push_back({.name = name});
+    EXPECT_EQ(
+        dxf_ink_layers(sheet),
+        (std::vector<std::string>{"Ink_indigo_70___gamboge_30", "Ink_A", "Ink_a_2", "Ink_a_b", "Ink_a_b_2", "Ink__",
+                                  "Ink___2", "Ink_carbon_black_50___burnt_sie", "Ink_carbon_black_50___burnt_s_2"}));
+    const std::vector<std::string> names = ink_layers(sheet);
+    EXPECT_EQ(names[0], "Ink indigo 70 + gamboge 30");
+    EXPECT_EQ(names[4], "Ink a_b_2");
+    EXPECT_EQ(names[5], "Ink 墨");
 }
 
 // 4: millimetres, 1: metric (DXF reference, header variables).

@@ -71,7 +71,8 @@ CLI::App* add_decals(CLI::App& app, Decals& d) {
     auto* s =
         app.add_subcommand("decals", "flatten the painted areas at true size, as sheets of film to print and cut");
     s->add_option("PROJECT", d.project, "project file (.tuft)")->required();
-    s->add_option("-o,--output", d.output, ".pdf (spot colours, all pages), .svg or .dxf (cut lines)")->required();
+    s->add_option("-o,--output", d.output, ".pdf (spot colours, all pages), .svg or .dxf (cut lines, outlines)")
+        ->required();
     s->add_option("--mask", d.mask, "the areas of this mask, painted or not, instead of all painted areas");
     add_layers(s, d.layers);
     add_recolouring(s, d.recolouring);
@@ -115,7 +116,7 @@ CLI::App* add_decals(CLI::App& app, Decals& d) {
     s->add_flag(
         "--outlines", d.print.outlines,
         "print what is painted in one ink, or with --plates each plate, as filled outlines instead of a picture; "
-        "in .svg and .dxf on a layer 'Ink NAME' each");
+        "in .svg on a layer 'Ink NAME' each, in .dxf 'Ink_NAME'");
     s->add_option("--colour-space", d.print.colour_space,
                   "of the pictures, whose profile is stored: srgb (default), display-p3")
         ->check(CLI::IsMember({"srgb", "display-p3"}));

@@ -61,15 +61,14 @@ std::string dxf_text(const decal::Sheet& sheet, std::size_t index) {
             pair(73, "0") + pair(40, 0.0) + pair(0, "ENDTAB");
     text += pair(0, "TABLE") + pair(2, "LAYER") + pair(70, std::to_string(std::size(kLayers) + sheet.inks.size()));
     for (const Layer& layer : kLayers) text += layer_entry(layer.name, layer.colour);
-    for (std::size_t i = 0; i < sheet.inks.size(); ++i)
-        text += layer_entry(ink_layer(sheet.inks[i].name), ink_colour(i));
+    const std::vector<std::string> inks = dxf_ink_layers(sheet);
+    for (std::size_t i = 0; i < inks.size(); ++i) text += layer_entry(inks[i], ink_colour(i));
     text += pair(0, "ENDTAB") + pair(0, "ENDSEC") + pair(0, "SECTION") + pair(2, "ENTITIES");
     for (const Layer& layer : kLayers)
         for (const decal::Line& line : page.lines)
             if (line.role == layer.role) text += polyline(line, layer.name);
     for (const decal::InkArea& area : page.areas)
-        for (const decal::Ring& ring : area.region)
-            text += polyline({ring, true}, ink_layer(sheet.inks[area.ink].name));
+        for (const decal::Ring& ring : area.region) text += polyline({ring, true}, inks[area.ink]);
     return text + pair(0, "ENDSEC") + pair(0, "EOF");
 }
 

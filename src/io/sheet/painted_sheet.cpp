@@ -147,6 +147,18 @@ std::string name_of_mix(const std::vector<double>& mix, const std::vector<decal:
     return name;
 }
 
+/// A coded colour of a space as one of sRGB, cut to its gamut.
+std::array<double, 3> srgb_of(const std::array<double, 3>& colour, ink::ColourSpace space) {
+    if (space == ink::ColourSpace::srgb) return colour;
+    ink::Rgb linear{};
+    for (std::size_t c = 0; c < 3; ++c) {
+        const auto stored = static_cast<float>(colour[c]);
+        linear[c] = ink::data_of(space).linear ? stored : ink::srgb_decode(stored);
+    }
+    const ink::Rgb cut = ink::into_gamut(ink::transform(ink::to_linear_srgb(space), linear), ink::ColourSpace::srgb);
+    return {ink::srgb_encode(cut[0]), ink::srgb_encode(cut[1]), ink::srgb_encode(cut[2])};
+}
+
 /// Keeps the pigments of which there is something; a tint of 100 % is the most of each anywhere.
 std::vector<decal::Plate> find_plates(ink::AtlasMap<float>& amounts, const stroke::Document& painting) {
     const std::vector<ink::Pigment>& pigments = painting.layers().pigments();
@@ -208,7 +220,10 @@ decal::Sheet make_painted_sheet(const stroke::Document& painting, const SheetReq
     decal::SheetOptions options = request.sheet;
     options.outlines = outlines;
     decal::Sheet sheet = decal::make_sheet(*model.mesh, source, options);
-    for (decal::SheetInk& ink : sheet.inks) ink.name = name_of_mix(ink.mix, plates);
+    for (decal::SheetInk& ink : sheet.inks) {
+        ink.name = name_of_mix(ink.mix, plates);
+        ink.srgb = srgb_of(ink.colour, request.space);
+    }
     if (request.plates) {
         if (outlines)
             for (const decal::Plate& plate : plates) sheet.inks.push_back({.name = plate.name, .colour = plate.colour});

@@ -138,7 +138,7 @@ class PdfSheet {
 
     void add_area(const decal::InkArea& area, std::string& content) const {
         const decal::SheetInk& ink = sheet_.inks[area.ink];
-        content += sheet_.plates.empty() ? fmt::format("q /Colour cs {:.4f} {:.4f} {:.4f} sc\n", ink.colour[0],
+        content += sheet_.plates.empty() ? fmt::format("q /Colour cs {:.4f} {:.4f} {:.4f} scn\n", ink.colour[0],
                                                        ink.colour[1], ink.colour[2])
                                          : fmt::format("q /Plate gs /Plate{} cs 1 scn\n", area.ink);
         for (const decal::Ring& ring : area.region) {

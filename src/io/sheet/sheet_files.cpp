@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstring>
+#include <set>
 
 #include "core/error.h"
 #include "core/files/extension.h"
@@ -27,17 +28,53 @@ bool has_plate_pictures(const decal::Sheet& sheet) {
     });
 }
 
+/// Numbers names that differ in capitals alone, or not at all: DXF and files of layers know no capitals.
+void tell_apart(std::vector<std::string>& names, std::size_t longest) {
+    std::set<std::string> used;
+    const auto is_new = [&](std::string name) {
+        for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        return used.insert(name).second;
+    };
+    for (std::string& name : names) {
+        const std::string plain = name;
+        for (int k = 2; !is_new(name); ++k) {
+            const std::string number = fmt::format("_{}", k);
+            name = plain.substr(0, std::min(plain.size(), longest - number.size())) + number;
+        }
+    }
+}
+
 void write_text(const fs::path& path, const std::string& text) {
     write_file(path, text.data(), text.size());
 }
 
 }  // namespace
 
-std::string ink_layer(const std::string& ink) {
-    std::string name = "Ink " + ink;
-    for (char& c : name)
-        if (static_cast<unsigned char>(c) < ' ' || c == '\x7f' || std::strchr("<>/\\\":;?*|='", c)) c = '_';
-    return name;
+std::vector<std::string> ink_layers(const decal::Sheet& sheet) {
+    std::vector<std::string> names;
+    for (const decal::SheetInk& ink : sheet.inks) {
+        std::string& name = names.emplace_back("Ink " + ink.name);
+        for (char& c : name)
+            if (static_cast<unsigned char>(c) < ' ' || c == '\x7f' || std::strchr("<>/\\\":;?*|='", c)) c = '_';
+    }
+    tell_apart(names, std::string::npos);
+    return names;
+}
+
+std::vector<std::string> dxf_ink_layers(const decal::Sheet& sheet) {
+    constexpr std::size_t kLongest = 31;
+    std::vector<std::string> names;
+    for (const decal::SheetInk& ink : sheet.inks) {
+        std::string& name = names.emplace_back("Ink_");
+        for (const char c : ink.name) {
+            const auto byte = static_cast<unsigned char>(c);
+            if ((byte & 0xc0) == 0x80) continue;  // of a character of UTF-8 that is an '_' already
+            name += byte < 0x80 && (std::isalnum(byte) || c == '$' || c == '-') ? c : '_';
+        }
+        name.resize(std::min(name.size(), kLongest));
+    }
+    tell_apart(names, kLongest);
+    return names;
 }
 
 std::vector<fs::path> write_sheet(const fs::path& path, const decal::Sheet& sheet) {

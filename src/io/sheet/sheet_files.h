@@ -13,9 +13,12 @@ namespace tuft::io {
 /// Name of the spot colour, class and layer of cut lines. Plotters find it by this spelling.
 inline constexpr const char* kCutContour = "CutContour";
 
-/// Returns the layer of an ink: "Ink " and its name, with `_` for control characters and those that DXF forbids in
-/// names (`<>/\":;?*|='`).
-std::string ink_layer(const std::string& ink);
+/// Returns the layer of each ink of a sheet: "Ink " and its name, with `_` for control characters and `<>/\":;?*|='`,
+/// which layers of CAD may not have. Of several of one name the second is "Ink NAME_2".
+std::vector<std::string> ink_layers(const decal::Sheet& sheet);
+
+/// The same by the rules of DXF R12: at most 31 of A-Z, a-z, 0-9, $, - and _; another character is an `_`.
+std::vector<std::string> dxf_ink_layers(const decal::Sheet& sheet);
 
 /// Writes a sheet; the extension chooses the format. Lengths are true: 1:1, in millimetres or points of 1/72 inch.
 ///
@@ -27,7 +30,7 @@ std::string ink_layer(const std::string& ink);
 /// - `.svg`: a file for each page, pictures as PNG inside; cut lines in a layer `CutContour`, areas of one
 ///   ink in a layer `Ink NAME` each.
 /// - `.dxf` (R12, ASCII, millimetres): a file for each page of film, closed polylines on the layer `CutContour`, marks
-///   on `Registration`, numbers and arrows on `Labels`, borders of areas of one ink on `Ink NAME`; no pictures.
+///   on `Registration`, numbers and arrows on `Labels`, borders of areas of one ink on `Ink_NAME`; no pictures.
 ///
 /// With several files their number stands before the extension: NAME-1.svg. All are written or none. Returns the paths
 /// of what was written. Throws `Error` for another extension, for pictures of plates in SVG, and where a file cannot be

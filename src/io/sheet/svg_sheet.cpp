@@ -65,8 +65,9 @@ std::string layer(const std::string& name, const std::string& style, const std::
 }
 
 /// A layer for each ink. Plates lie over each other as films do.
-std::string ink_layers(const decal::Sheet& sheet, const decal::Page& page) {
+std::string areas_of(const decal::Sheet& sheet, const decal::Page& page) {
     std::string text;
+    const std::vector<std::string> names = ink_layers(sheet);
     for (std::size_t i = 0; i < sheet.inks.size(); ++i) {
         std::string paths;
         for (const decal::InkArea& area : page.areas) {
@@ -81,10 +82,9 @@ std::string ink_layers(const decal::Sheet& sheet, const decal::Page& page) {
             paths += "\"/>\n";
         }
         if (paths.empty()) continue;
-        const auto byte = [&](std::size_t c) {
-            return std::lround(255 * std::clamp(sheet.inks[i].colour[c], 0.0, 1.0));
-        };
-        text += layer(escaped(ink_layer(sheet.inks[i].name)),
+        const std::array<double, 3> colour = sheet.inks[i].srgb.value_or(sheet.inks[i].colour);
+        const auto byte = [&](std::size_t c) { return std::lround(255 * std::clamp(colour[c], 0.0, 1.0)); };
+        text += layer(escaped(names[i]),
                       fmt::format("fill=\"#{:02x}{:02x}{:02x}\" fill-rule=\"nonzero\" stroke=\"none\"{}", byte(0),
                                   byte(1), byte(2), sheet.plates.empty() ? "" : " style=\"mix-blend-mode:multiply\""),
                       paths);
@@ -105,7 +105,7 @@ std::string svg_text(const decal::Sheet& sheet, std::size_t index) {
                "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" version=\"1.1\" width=\"{0:.4f}mm\" "
                "height=\"{1:.4f}mm\" viewBox=\"0 0 {0:.4f} {1:.4f}\">\n",
                kMm * page.size.x, kMm * page.size.y) +
-           layer("Print", "", pictures) + ink_layers(sheet, page) +
+           layer("Print", "", pictures) + areas_of(sheet, page) +
            layer("Labels",
                  "fill=\"none\" stroke=\"#000000\" stroke-width=\"0.18\" stroke-linecap=\"round\" "
                  "stroke-linejoin=\"round\"",
