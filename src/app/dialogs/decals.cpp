@@ -16,7 +16,7 @@ struct SheetFormat {
 constexpr SheetFormat kSheetFormats[] = {
     {"PDF", ".pdf", "All pages in one file; cut lines are the spot colour CutContour", true, true},
     {"SVG", ".svg", "One file a page, in millimetres, with its picture", false, true},
-    {"DXF", ".dxf", "The cut lines alone, in millimetres, for a plotter", false, false},
+    {"DXF", ".dxf", "Cut lines and outlines, in millimetres, for a plotter", false, false},
 };
 
 // What a kind of film lets one do.
@@ -74,7 +74,7 @@ void page_rows(Ui& ui, DecalSettings& c, const SheetFormat& format) {
     if (ui.combo("Dots per inch", dpi, {"150", "300", "600", "1200"}, 100)) c.dpi = std::stoi(dpi);
     ImGui::EndDisabled();
     dialog_row(ui, "");
-    ImGui::BeginDisabled(!format.plates && !c.outlines);
+    ImGui::BeginDisabled(!format.plates && !(c.outlines && c.mask.empty()));
     ui.toggle("A plate for each pigment", c.plates, "Separations for screen and pad printing instead of colours");
     ImGui::EndDisabled();
     dialog_row(ui, "");

@@ -1,5 +1,8 @@
 #include "app/paint/film_and_sheets.h"
 
+#include <algorithm>
+#include <cstdio>
+
 #include "io/image/film_file.h"
 #include "io/sheet/sheet_files.h"
 
@@ -14,13 +17,18 @@ void export_sheets(PaintContext& context, ExportSheets command) {
     for (const decal::Piece& piece : sheet.pieces) strain = std::max(strain, piece.strain);
     char percent[16];
     std::snprintf(percent, sizeof percent, "%.1f", 100 * strain);
-    if (sheet.left_out.fragments == 0)
-        context.outbox.report(Message("Pieces of film: {}, strained by {} % at most; {}", sheet.pieces.size(),
-                                      std::string(percent), written.front().string()));
-    else
-        context.outbox.report(Message("Pieces of film: {}, strained by {} % at most, without {} fragments; {}",
-                                      sheet.pieces.size(), std::string(percent), sheet.left_out.fragments,
-                                      written.front().string()));
+    Message result("Pieces of film: {}, strained by {} % at most; {}", sheet.pieces.size(), std::string(percent),
+                   written.front().string());
+    if (sheet.left_out.fragments > 0)
+        result = Message("Pieces of film: {}, strained by {} % at most, without {} fragments; {}", sheet.pieces.size(),
+                         std::string(percent), sheet.left_out.fragments, written.front().string());
+    const auto mixed = static_cast<std::size_t>(
+        std::ranges::count_if(sheet.pieces, [](const decal::Piece& piece) { return !piece.outlined; }));
+    if (command.request.sheet.outlines && mixed > 0)
+        result = command.request.sheet.prints
+                     ? Message("{}; of several inks and so as pictures: {} pieces", result, mixed)
+                     : Message("{}; of several inks and so without outlines: {} pieces", result, mixed);
+    context.outbox.report(result);
     context.publisher.publish();
 }
 
