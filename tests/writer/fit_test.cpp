@@ -302,8 +302,8 @@ TEST(Fit, ABellyThatReachesBackBeyondAHeadIsPressedLess) {
         const Cells& cells = target.wanted;
         fill(target.wanted, std::span(&head, 1));
         const StrokeLine line = make_stroke_line(sized({{106, 291}, {136, 252}, {108, 216}, {66, 160}, {18, 106}}));
-        const FitResult fitted = fit_stations(make_stations(line, measure_sides(line, std::span(&head, 1)), cells),
-                                              target, hand, {});
+        const FitResult fitted =
+            fit_stations(make_stations(line, measure_sides(line, std::span(&head, 1)), cells), target, hand, {});
         const stroke::PlaneInk ink = draw_on_plane(fitted.stations, hand, {}, 2, cells.cell);
         for (int j = 0; j < cells.height; ++j)
             for (int i = 0; i < cells.width; ++i)

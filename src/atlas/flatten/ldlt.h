@@ -25,8 +25,8 @@ struct SymmetricMatrix {
 /// vertices of one part of the dissection and their later neighbours have in common is one dense matrix. No pivoting.
 /// The order of all sums is fixed, so that the bits depend neither on the CPU nor on the number of threads, which
 /// factor subtrees. Ordered and factored by turns on one thread, a grid of 96,000 vertices takes CHOLMOD 5.12
-/// (supernodal, with OpenBLAS) 2.9 times as long in the order of AMD and 6 times in that of METIS, and Eigen's simplicial
-/// LDLᵀ 3.3 times.
+/// (supernodal, with OpenBLAS) 2.9 times as long in the order of AMD and 6 times in that of METIS, and Eigen's
+/// simplicial LDLᵀ 3.3 times.
 class LdltFactor {
   public:
     /// Factors a matrix. `at` [n] is where its rows lie: any numbers will do, the nearer those that share entries the
