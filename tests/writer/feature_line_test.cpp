@@ -116,6 +116,62 @@ TEST(FeatureLine, AnEdgeLiesOnTheSideOfThePlace) {
     EXPECT_THROW(feature_line(query, {0, 0.012, 0.022}, 0.005), Error);  // the edge is 8 mm away
 }
 
+// A fold that bends enough for a crease: the edge itself is the nearer of the two, from wherever it is asked for.
+TEST(FeatureLine, ASharpEdgeIsNoCreaseBesideItself) {
+    const mesh::TriangleMesh mesh = grid(
+        {-0.06, 0, 0.046}, [](double y) { return -std::max(y, 0.0) * std::tan(40 * kDegree); }, still);
+    const mesh::SurfaceQuery query(mesh);
+    for (const double y : {-0.006, -0.0071, -0.0083, -0.01015, -0.0102, -0.01117}) {
+        const FeatureLine line = feature_line(query, {0.003, y, 0}, 0.02);
+        EXPECT_EQ(line.kind, LineKind::sharp_edge) << y;
+        EXPECT_NEAR(line.path.length(), 0.12, 1e-6) << y;
+        for (const Vec3& n : line.path.normals) EXPECT_GT(n.z, 1 - 1e-6) << y;  // the face on the side of the place
+    }
+}
+
+// The rim of a drum, asked for from its top: the letters nearest to the place are upright for a reader above.
+TEST(FeatureLine, AClosedLineRunsToTheRightAtThePlace) {
+    constexpr std::uint32_t kSides = 24;
+    mesh::PolygonSoup soup;
+    soup.polygon_start = {0};
+    for (const double z : {0.0, 0.04})
+        for (std::uint32_t i = 0; i < kSides; ++i) {
+            const double turn = 360 * kDegree * i / kSides;
+            soup.points.emplace_back(0.04 * std::cos(turn), 0.04 * std::sin(turn), z);
+        }
+    const auto add = [&](const std::vector<std::uint32_t>& face) {
+        soup.corners.insert(soup.corners.end(), face.begin(), face.end());
+        soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
+    };
+    std::vector<std::uint32_t> top;
+    for (std::uint32_t i = 0; i < kSides; ++i) {
+        const std::uint32_t next = (i + 1) % kSides;
+        add({i, next, kSides + next, kSides + i});
+        top.push_back(kSides + i);
+    }
+    add(top);
+    const mesh::TriangleMesh mesh = mesh::build_surface(std::move(soup), {.metres_per_unit = 1}).mesh;
+    const mesh::SurfaceQuery query(mesh);
+    for (const auto& [place, right] : {std::pair(Vec3(0.001, -0.038, 0.04), Vec3(1, 0, 0)),
+                                       {Vec3(0.001, 0.038, 0.04), Vec3(1, 0, 0)},
+                                       {Vec3(0.038, 0.001, 0.04), Vec3(0, 1, 0)},
+                                       {Vec3(-0.038, 0.001, 0.04), Vec3(0, 1, 0)}}) {
+        const FeatureLine line = feature_line(query, place, 0.02);
+        EXPECT_EQ(line.kind, LineKind::sharp_edge);
+        ASSERT_TRUE(line.path.closed);
+        const std::vector<Vec3>& points = line.path.points;
+        ASSERT_EQ(points.size(), kSides);
+        std::size_t at = 0;  // the step nearest to the place
+        const auto away = [&](std::size_t i) {
+            return glm::distance(0.5 * (points[i] + points[(i + 1) % kSides]), place);
+        };
+        for (std::size_t i = 0; i < kSides; ++i)
+            if (away(i) < away(at)) at = i;
+        EXPECT_GT(line.path.normals[at].z, 1 - 1e-6);
+        EXPECT_GT(glm::dot(glm::normalize(points[(at + 1) % kSides] - points[at]), right), 0.9);
+    }
+}
+
 TEST(FeatureLine, WhereGroupsMeetIsALineAndSoIsABorder) {
     const mesh::TriangleMesh mesh = grid(rows(-0.03, 0.03, 0.01), still, still, 0.01);
     const mesh::SurfaceQuery query(mesh);
@@ -124,7 +180,8 @@ TEST(FeatureLine, WhereGroupsMeetIsALineAndSoIsABorder) {
     for (const Vec3& p : groups.path.points) EXPECT_NEAR(p.y, 0.01, 2e-5);  // a thousandth of the reach beside it
     const FeatureLine border = feature_line(query, {0, -0.026, 0}, 0.01);
     EXPECT_EQ(border.kind, LineKind::border);
-    EXPECT_TRUE(border.path.closed || border.path.length() > 0.11);
+    EXPECT_FALSE(border.path.closed);  // its corners turn by more than 60 degrees
+    EXPECT_NEAR(border.path.length(), 0.12, 1e-6);
 }
 
 }  // namespace

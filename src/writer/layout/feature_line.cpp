@@ -173,16 +173,17 @@ class EdgeWalk {
 
 /// Turns a path so that a reader outside sees it run to the right.
 void run_to_right(ModelPath& path) {
-    constexpr double kLevel = 0.05;  // of the path's length
+    constexpr double kFlat = 0.05;  // of the path's length
+    const std::size_t n = path.points.size();
     double to_right = 0, length = 0;
     Vec3 along{0};
-    for (std::size_t i = 0; i + 1 < path.points.size(); ++i) {
-        const Vec3 step = path.points[i + 1] - path.points[i];
+    for (std::size_t i = 0; i + (path.closed ? 0 : 1) < n; ++i) {
+        const Vec3 step = path.points[(i + 1) % n] - path.points[i];
         to_right += glm::dot(step, glm::cross(Vec3(0, 0, 1), path.normals[i]));
         length += glm::length(step);
-        along += step;
+        if (!path.closed || i == 0) along += step;  // a closed path begins at the place
     }
-    if (std::abs(to_right) < kLevel * length) to_right = std::abs(along.x) > std::abs(along.y) ? along.x : along.y;
+    if (std::abs(to_right) < kFlat * length) to_right = std::abs(along.x) > std::abs(along.y) ? along.x : along.y;
     if (to_right >= 0) return;
     std::ranges::reverse(path.points);
     std::ranges::reverse(path.normals);
@@ -194,8 +195,9 @@ FeatureLine feature_line(const mesh::SurfaceQuery& query, const Vec3& through, d
     EdgeWalk walk(query.mesh(), feature_edges(query.mesh()));
     const auto [first, away] = walk.empty() ? std::pair(std::size_t{0}, HUGE_VAL) : walk.nearest(through);
     FeatureLine line{.away = away};
-    if (away > kPreferEdge * reach)
-        if (auto crease = crease_line(query, through, std::min(reach, away)); crease && crease->away < away)
+    // A sharp edge is a crease as well, whose middle may seem nearer by a fraction of the sections' spacing.
+    if (const double nearer = std::min(reach, away - kPreferEdge * reach); nearer > 0)
+        if (auto crease = crease_line(query, through, nearer); crease && crease->away <= nearer)
             line = std::move(*crease);
     if (line.path.points.empty()) {
         if (away == HUGE_VAL)

@@ -26,9 +26,10 @@ struct FeatureLine {
 };
 
 /// Returns the feature line nearest to `through`, at most `reach` metres away; an edge is preferred to a crease that is
-/// hardly nearer. Edges are followed to the next with the least turn, up to where every next one turns by more than
-/// 60°; their points lie a thousandth of the reach beside them, on the face that is on the side of `through`. A reader
-/// outside sees the line run to the right, one above a level surface towards +x, if it does not stand upright.
+/// not nearer by a tenth of the reach. Edges are followed to the next with the least turn, up to where every next one
+/// turns by more than 60°; their points lie a thousandth of the reach beside them, on the face that is on the side of
+/// `through`. A reader outside sees the line run to the right, one above a level surface towards +x or, where it runs
+/// more along y, +y; a closed line above a level surface does so at the place.
 ///
 /// A crease is where the surface bends by 12° and more within 4, 8, 16 or 32 mm (at most a tenth of the model's size),
 /// the least that does, and 2.5 times as much as beside it within as much. Its line is the middle of the bend, Σ x Δφ /
