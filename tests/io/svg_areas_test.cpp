@@ -136,6 +136,55 @@ TEST(SvgAreas, ATranslucentGroupIsOneFilm) {
     EXPECT_EQ(read("<g opacity='.5'><circle cx='9' cy='9' r='2' fill='red'/>" + shapes + "</g>").areas.size(), 2u);
 }
 
+/// A comb over the page's width with its back at `y` mm and `n` points along its teeth, 10 mm long.
+std::string comb(double y, int n) {
+    std::string d = "M0 " + std::to_string(y);
+    for (int i = 0; i <= n; ++i) d += "L" + std::to_string(100.0 * i / n) + " " + std::to_string(y + (i % 2 ? 10 : 8));
+    return "<path d='" + d + "L100 " + std::to_string(y) + "z' fill='blue'/>";
+}
+
+TEST(SvgAreas, WhatIsTooLargeToCutStaysAndIsReported) {
+    const std::string page = "<rect width='100' height='100' fill='red'/>";
+    // The third comb over what two have left has more points than are cut.
+    const auto combs = read("<g opacity='.9'>" + page + comb(10, 8'000) + comb(40, 8'000) + comb(70, 8'000) + "</g>");
+    ASSERT_EQ(combs.areas.size(), 4u);
+    EXPECT_EQ(combs.notes.size(), 1u);
+    const stroke::AreaRaster cut(combs.areas[0], 1e-3);
+    for (const auto& [y, left] : {std::pair(5, true), {15, false}, {25, true}, {45, false}, {75, true}})
+        EXPECT_EQ(cut.mean({0.05, 1e-3 * y}, 1e-9) > 0.5, left) << y;
+    // One that is too large by itself takes nothing back of what another hides.
+    const auto large = read("<g opacity='.9'>" + page + "<rect x='40' y='2' width='20' height='6'/>" +
+                            comb(10, 21'000) + "<rect x='40' y='92' width='20' height='6'/></g>");
+    ASSERT_EQ(large.areas.size(), 4u);
+    EXPECT_EQ(large.notes.size(), 1u);
+    const stroke::AreaRaster kept(large.areas[0], 1e-3);
+    for (const auto& [y, left] : {std::pair(5, false), {15, true}, {50, true}, {95, false}})
+        EXPECT_EQ(kept.mean({0.05, 1e-3 * y}, 1e-9) > 0.5, left) << y;
+}
+
+TEST(SvgAreas, ShapesOfAFilmMeetWithinTheirClipsOnly) {
+    const auto met = [](const std::string& of_film) {
+        return !read(
+                    "<clipPath id='l'><path d='M0 0H20V5H5V20H0z'/></clipPath><linearGradient id='g'>"
+                    "<stop stop-color='red'/><stop offset='1' stop-color='blue'/></linearGradient><g opacity='.5'>"
+                    "<rect width='20' height='20' clip-path='url(#l)'/>" +
+                    of_film + "</g>")
+                    .notes.empty();
+    };
+    EXPECT_FALSE(met("<rect x='10' y='10' width='9' height='9' fill='url(#g)'/>"));
+    EXPECT_TRUE(met("<rect x='10' y='2' width='9' height='9' fill='url(#g)'/>"));
+}
+
+TEST(SvgAreas, ATranslucentPatternIsOneFilm) {
+    const auto read_pattern = read(
+        "<pattern id='p' width='10' height='10' patternUnits='userSpaceOnUse'><rect width='6' height='6' fill='red'/>"
+        "<rect x='3' y='3' width='6' height='6' fill='blue'/></pattern>"
+        "<rect width='10' height='10' fill='url(#p)' fill-opacity='.5'/>");
+    ASSERT_EQ(read_pattern.areas.size(), 2u);
+    EXPECT_NEAR(covered(read_pattern.areas[0], 0.1), 27, 0.5);  // but for the cells on its edges
+    EXPECT_NEAR(covered(read_pattern.areas[1], 0.1), 36, 0.5);
+}
+
 TEST(SvgAreas, SelectorsAndSpecificity) {
     const auto ink = [](const std::string& sheet) {
         return read("<style>rect{fill:#400000}" + sheet +

@@ -114,7 +114,8 @@ Shape::Shape(std::span<const Ring> rings, FillRule rule) {
     std::size_t n = 0;
     for (const Ring& ring : rings) n += ring.size();
     const Grid grid(rings);
-    if (n > kMostPoints || grid.scale == 0 || crosses_more_than(kMostPoints, rings)) return;
+    too_large_ = n > kMostPoints || crosses_more_than(kMostPoints, rings);
+    if (too_large_ || grid.scale == 0) return;
     rings_ = united(grid, grid.paths(rings), rule == FillRule::nonzero ? clip::pftNonZero : clip::pftEvenOdd);
 }
 
@@ -176,7 +177,8 @@ Shape Shape::combined(const Shape& other, Operation operation) const {
     for (const Ring& ring : all) n += ring.size();
     Shape shape;
     const Grid grid(all);
-    if (n > kMostPoints || grid.scale == 0 || crosses_more_than(kMostPoints, all)) return shape;
+    shape.too_large_ = n > kMostPoints || crosses_more_than(kMostPoints, all);
+    if (shape.too_large_ || grid.scale == 0) return shape;
     clip::Clipper clipper;
     clipper.AddPaths(grid.paths(rings_), clip::ptSubject, true);
     clipper.AddPaths(grid.paths(other.rings_), clip::ptClip, true);
@@ -187,7 +189,10 @@ Shape Shape::combined(const Shape& other, Operation operation) const {
 }
 
 Shape Shape::intersected(const Shape& other) const {
-    return empty() || other.empty() ? Shape() : combined(other, clip::ctIntersection);
+    if (!empty() && !other.empty()) return combined(other, clip::ctIntersection);
+    Shape none;
+    none.too_large_ = too_large_ || other.too_large_;
+    return none;
 }
 
 Shape Shape::without(const Shape& other) const {

@@ -24,6 +24,8 @@ class Shape {
 
     const std::vector<Ring>& rings() const { return rings_; }
     bool empty() const { return rings_.empty(); }
+    /// Whether it is empty for too many points or crossings, its own or of a shape that it was made from.
+    bool too_large() const { return too_large_; }
     double area() const;       ///< m²
     double perimeter() const;  ///< metres, of all rings
     /// Whether a point lies in the shape.
@@ -39,7 +41,8 @@ class Shape {
     /// Returns the points within `d` metres of the shape, corners round to `tolerance` metres.
     Shape grown(double d, double tolerance) const;
 
-    /// Return what lies in both shapes, and what lies in this one alone. Empty for more than `kMostPoints` points.
+    /// Return what lies in both shapes, and what lies in this one alone. Empty for more than `kMostPoints` points or
+    /// crossings.
     Shape intersected(const Shape& other) const;
     Shape without(const Shape& other) const;
 
@@ -53,6 +56,7 @@ class Shape {
     Shape combined(const Shape& other, Operation operation) const;
 
     std::vector<Ring> rings_;
+    bool too_large_ = false;
 };
 
 }  // namespace tuft::io

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
-#include <span>
 
 #include "core/error.h"
 #include "core/system/interrupt.h"
@@ -17,12 +17,14 @@
 namespace tuft::io {
 namespace {
 
-constexpr double kStopStep = 8;                  // ΔE2000 between stops
-constexpr int kMostBetween = 16;                 // stops between two of the file
-constexpr std::size_t kMostMaskPieces = 20'000;  // of masked areas
-constexpr double kSeen = 1.0 / 512;              // opacity
-constexpr std::size_t kMostCuts = 20'000;        // of shapes in translucent groups by others
-constexpr double kLeastOverlap = 1e-6;           // of an area
+constexpr double kStopStep = 8;                   // ΔE2000 between stops
+constexpr int kMostBetween = 16;                  // stops between two of the file
+constexpr std::size_t kMostMaskPieces = 20'000;   // of masked areas
+constexpr double kSeen = 1.0 / 512;               // opacity
+constexpr std::size_t kMostPairs = 100'000'000;   // of shapes in translucent groups whose extents are compared
+constexpr std::size_t kMostCutWork = 20'000'000;  // points of shapes there that are cut by others
+constexpr std::size_t kCutWork = 100;             // likewise, for a cut as such
+constexpr double kLeastOverlap = 1e-6;            // of an area
 
 ink::Lab lab_of(const SvgColour& c) {
     std::array<double, 3> linear{};
@@ -162,49 +164,108 @@ class AreaMaker {
         for (std::vector<PaintedPart>& parts : all)
             for (PaintedPart& part : parts)
                 if (part.shape->film > 0) films[part.shape->film].push_back(&part);
-        for (auto& [number, parts] : films)
-            for (std::size_t i = 0; i + 1 < parts.size(); ++i) cut_by(*parts[i], std::span(parts).subspan(i + 1));
+        for (auto& [number, parts] : films) cut_film(parts);
         for (std::vector<PaintedPart>& parts : all) std::erase_if(parts, [](const auto& p) { return p.rings.empty(); });
-    }
-    void cut_by(PaintedPart& part, std::span<PaintedPart* const> over) {
-        const Extent own = extent_of(part);
-        std::optional<Shape> left;
-        bool shows = false;
-        for (const PaintedPart* other : over) {
-            check_interrupt();
-            const Extent e = extent_of(*other);
-            if (e.low.x >= own.high.x || e.high.x <= own.low.x || e.low.y >= own.high.y || e.high.y <= own.low.y)
-                continue;
-            const bool solid = !other->gradient && !other->picture && other->shape->masks.empty() &&
-                               other->opacity > (1 - kSeen) * other->shape->film_opacity;
-            if (n_points_of(part) + n_points_of(*other) > Shape::kMostPoints || ++n_cuts_ > kMostCuts)
-                return scene_.losses.add(SvgLoss::overlap);
-            Shape cover(other->rings, other->rule);
-            for (const std::size_t k : other->shape->clips) cover = cover.intersected(scene_.clips[k]);
-            const Shape before = left ? *left : Shape(part.rings, part.rule);
-            Shape after = before.without(cover);
-            if (!(before.area() - after.area() > kLeastOverlap * before.area())) continue;
-            shows |= !solid;
-            if (solid) left = std::move(after);
-        }
-        if (shows) scene_.losses.add(SvgLoss::overlap);
-        if (!left) return;
-        part.rings = left->rings();
-        part.rule = FillRule::nonzero;
-        part.lines.clear();
     }
     struct Extent {
         Vec2 low{HUGE_VAL}, high{-HUGE_VAL};
     };
-    static Extent extent_of(const PaintedPart& part) {
+    static Extent extent_of(const std::vector<Ring>& rings) {
         Extent e;
-        for (const Ring& ring : part.rings)
+        for (const Ring& ring : rings)
             for (const Vec2& p : ring) e = {glm::min(e.low, p), glm::max(e.high, p)};
         return e;
     }
-    static std::size_t n_points_of(const PaintedPart& part) {
+    struct FilmPart {
+        PaintedPart* part = nullptr;
+        Extent extent;
+        std::optional<Shape> cover = {};     // within its clips
+        std::vector<std::size_t> over = {};  // parts before it whose extents meet its own
+    };
+    void cut_film(const std::vector<PaintedPart*>& parts) {
+        std::vector<FilmPart> film;
+        std::map<std::size_t, Extent> clips;
+        for (PaintedPart* part : parts) {
+            Extent e = extent_of(part->rings);
+            for (const std::size_t k : part->shape->clips) {
+                const auto [at, is_new] = clips.try_emplace(k);
+                if (is_new) at->second = extent_of(scene_.clips[k].rings());
+                const Extent& clip = at->second;
+                e = {glm::max(e.low, clip.low), glm::min(e.high, clip.high)};
+            }
+            film.push_back({part, e});
+        }
+        bool done = find_neighbours(film);
+        for (std::size_t i = 0; done && i < film.size(); ++i) done = cut_by(film[i], film);
+        if (!done) scene_.losses.add(SvgLoss::overlap);
+    }
+    // Whether there are not too many.
+    bool find_neighbours(std::vector<FilmPart>& film) {
+        std::vector<std::size_t> order(film.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::ranges::stable_sort(order, {}, [&](std::size_t i) { return film[i].extent.low.x; });
+        std::size_t n_over = 0;
+        for (std::size_t k = 0; k < order.size(); ++k) {
+            check_interrupt();
+            const Extent& a = film[order[k]].extent;
+            for (std::size_t l = k + 1; l < order.size() && film[order[l]].extent.low.x < a.high.x; ++l) {
+                if (++n_pairs_ > kMostPairs) return false;
+                const Extent& b = film[order[l]].extent;
+                if (b.high.x <= a.low.x || b.low.y >= a.high.y || b.high.y <= a.low.y) continue;
+                if (++n_over > kMostCutWork / kCutWork) return false;
+                film[std::min(order[k], order[l])].over.push_back(std::max(order[k], order[l]));
+            }
+        }
+        for (FilmPart& one : film) std::ranges::sort(one.over);
+        return true;
+    }
+    // Whether that is not too much work.
+    bool cut_by(FilmPart& one, std::vector<FilmPart>& film) {
+        PaintedPart& part = *one.part;
+        one.cover.reset();  // those before it are done
+        if (one.over.empty()) return true;
+        Shape left(part.rings, part.rule);
+        bool cut = false, shows = left.too_large(), done = true;
+        for (std::size_t k = 0; k < one.over.size() && !left.empty(); ++k) {
+            check_interrupt();
+            FilmPart& other = film[one.over[k]];
+            const Shape cover = cover_within(other, part.shape->clips);
+            shows |= cover.too_large();
+            cut_work_ += kCutWork + n_points_of(left.rings()) + n_points_of(cover.rings());
+            done = cut_work_ <= kMostCutWork;
+            if (!done) break;
+            Shape after = left.without(cover);
+            if (!after.too_large() && !(left.area() - after.area() > kLeastOverlap * left.area())) continue;
+            if (after.too_large() || !is_solid(*other.part))
+                shows = true;
+            else
+                left = std::move(after), cut = true;
+        }
+        if (shows) scene_.losses.add(SvgLoss::overlap);
+        if (!cut) return done;
+        part.rings = left.rings();
+        part.rule = FillRule::nonzero;
+        part.lines.clear();
+        return done;
+    }
+    Shape cover_within(FilmPart& over, const std::vector<std::size_t>& clips) const {
+        const PaintedPart& part = *over.part;
+        if (!over.cover) {
+            over.cover = Shape(part.rings, part.rule);
+            for (const std::size_t k : part.shape->clips) over.cover = over.cover->intersected(scene_.clips[k]);
+        }
+        Shape cover = *over.cover;
+        for (const std::size_t k : clips)
+            if (!std::ranges::count(part.shape->clips, k)) cover = cover.intersected(scene_.clips[k]);
+        return cover;
+    }
+    static bool is_solid(const PaintedPart& part) {
+        return !part.gradient && !part.picture && part.shape->masks.empty() &&
+               part.opacity > (1 - kSeen) * part.shape->film_opacity;
+    }
+    static std::size_t n_points_of(const std::vector<Ring>& rings) {
         std::size_t n = 0;
-        for (const Ring& ring : part.rings) n += ring.size();
+        for (const Ring& ring : rings) n += ring.size();
         return n;
     }
     static std::vector<PaintedPart>* first_painted(std::vector<std::vector<PaintedPart>>& all) {
@@ -234,15 +295,13 @@ class AreaMaker {
         const auto whole = [&] { emit(part, part.rings, part.lines, part.rule == FillRule::even_odd, 1, nullptr); };
         const bool past_page = is_past_page(part.rings);
         if (s.clips.empty() && s.masks.empty() && !past_page) return whole();
-        std::size_t n = 0;
-        for (const Ring& ring : part.rings) n += ring.size();
-        if (n > Shape::kMostPoints) {
-            scene_.losses.add(s.masks.empty() ? SvgLoss::clip : SvgLoss::mask);
-            return whole();
-        }
         Shape region(part.rings, part.rule);
         if (past_page) region = region.intersected(page_);
         for (const std::size_t k : s.clips) region = region.intersected(scene_.clips[k]);
+        if (region.too_large()) {
+            scene_.losses.add(s.masks.empty() ? SvgLoss::clip : SvgLoss::mask);
+            return whole();
+        }
         std::vector<MaskPiece> pieces{{std::move(region), 1, 1, nullptr}};
         for (const std::size_t k : s.masks) pieces = masked(std::move(pieces), scene_.masks[k]);
         for (const MaskPiece& piece : pieces)
@@ -422,7 +481,7 @@ class AreaMaker {
     Shape page_;
     Inks inks_;
     std::vector<stroke::RecordedStroke> out_;
-    std::size_t n_points_ = 0, n_pieces_ = 0, n_cuts_ = 0;
+    std::size_t n_points_ = 0, n_pieces_ = 0, n_pairs_ = 0, cut_work_ = 0;
 };
 
 }  // namespace

@@ -481,6 +481,7 @@ class SceneReader {
         inside.matrix = state.matrix * own;
         inside.style = style_round(content);
         inside.opacity = shape.opacity * shape.style.fill_opacity;
+        if (inside.film == 0 && inside.opacity < 1) inside.film = ++n_films_, inside.film_opacity = inside.opacity;
         State outer = state;
         add_clip(outer, shape.lines, shape.style.rule);
         inside.clips.push_back(outer.clips.back());
