@@ -82,6 +82,23 @@ TEST(Drape, SharedLinesGiveTheBitsOfOnesOwn) {
     EXPECT_EQ(shared.of(front), shared.of(front));
 }
 
+// What a trace far off needs, up to 375 MB, is not kept.
+TEST(Drape, LargeOnesAreNotKept) {
+    const TriangleMesh ball = rough_sphere();
+    const auto query = std::make_shared<const SurfaceQuery>(ball);
+    const Placement front = upright_at({0, -kSphereRadius, 0}, {0, -1, 0}, SurfaceMapping::drape);
+    const StrokeSamples trace = make_trace(front, scattered(12, 0.02));
+    Drapes shared(query), none(query, 0);
+    const auto first = shared.of(front), other = none.of(front);
+    const SurfaceTrace kept = map_to_surface(*query, trace, &shared), dropped = map_to_surface(*query, trace, &none);
+    EXPECT_EQ(shared.of(front), first);
+    EXPECT_NE(none.of(front), other);
+    EXPECT_EQ(other->bytes(), first->bytes());
+    EXPECT_GE(first->bytes(), sizeof(SurfacePatch) * 12 * 2);
+    for (std::size_t k = 0; k < kept.samples.size(); ++k)
+        EXPECT_EQ(kept.samples[k].position, dropped.samples[k].position);
+}
+
 TEST(Drape, OnAPlaneIsTheIdentity) {
     const TriangleMesh sheet = make_sheet();
     const SurfaceQuery query(sheet);

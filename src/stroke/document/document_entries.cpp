@@ -193,11 +193,13 @@ void Document::edit_parts(std::uint64_t id, const PartEdit& edit) {
     record({.entry = id, .parts = std::move(before)});
 }
 
-// What was made for the parts as they were: the film's stencil, areas mapped to the surface, the colours of the texels.
+// What was made for the parts as they were: the film's stencil, areas mapped to the surface, the lines of drapes,
+// the colours of the texels.
 void Document::set_parts(PartTable table) {
     if (table == parts_.table()) return;
     film_.release();
     scratch_.flat_texels.reset();
+    scratch_.drapes.reset();
     const bool same = have_same_substrates(table, parts_.table());
     std::vector<std::uint32_t> slots;
     const auto add_slots = [&] {

@@ -92,10 +92,12 @@ std::array<SurfacePatch, 2> Drape::patches_of(int ray, std::size_t ring) {
         start.heading = std::cos(phi) * axes_.right + std::sin(phi) * axes_.down;
         start.curvature = fit_patch(query_, start, radius_).curvature;
         line.push_back(start);
+        ++n_patches_;
     }
     while (line.size() <= ring + 1) {
         check_interrupt();
         line.push_back(step(query_, line.back(), stride_, radius_));
+        ++n_patches_;
     }
     return {line[ring], line[ring + 1]};
 }
@@ -107,6 +109,11 @@ std::shared_ptr<Drape> Drapes::of(const Placement& place) {
     kept_.splice(kept_.begin(), kept_, found);
     if (kept_.size() > kMost) kept_.pop_back();
     return kept_.front().drape;
+}
+
+void Drapes::drop_large() {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(kept_, [&](const Kept& kept) { return kept.drape->bytes() > large_; });
 }
 
 double drape_radius(const mesh::TriangleMesh& mesh) {
@@ -143,6 +150,7 @@ SurfaceTrace map_draped(const SurfaceQuery& query, const StrokeSamples& trace, D
         mapped.missed += !out.on_surface;
         mapped.samples.push_back(out);
     }
+    if (shares) shared->drop_large();
     return mapped;
 }
 

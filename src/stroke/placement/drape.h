@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -24,6 +25,7 @@ class Drape {
 
     double origin_gap() const { return gap_; }  ///< metres between the placement's origin and the surface
     double radius() const { return radius_; }   ///< metres, of patches
+    std::size_t bytes() const { return n_patches_ * sizeof(SurfacePatch); }  ///< of its lines so far
 
     /// Returns place, normal and axes of a flat point on the smoothed surface; `on_surface` as it is there.
     SurfaceSample at(const Vec2& flat);
@@ -44,24 +46,31 @@ class Drape {
     SurfacePatch origin_;
     Axes axes_;
     std::array<Line, kRays> lines_;
+    std::atomic<std::size_t> n_patches_ = 0;
 };
 
-/// The drapes of the placements that were asked for last on one surface. Safe in several threads.
+/// The drapes of the placements that were asked for last on one surface, none of them large. Safe in several threads.
 class Drapes {
   public:
-    explicit Drapes(std::shared_ptr<const mesh::SurfaceQuery> surface) : surface_(std::move(surface)) {}
+    static constexpr std::size_t kLarge = std::size_t{16} << 20;  // bytes; that of a drawing of a metre: 3 MB
+
+    explicit Drapes(std::shared_ptr<const mesh::SurfaceQuery> surface, std::size_t large = kLarge)
+        : surface_(std::move(surface)), large_(large) {}
 
     const mesh::SurfaceQuery& surface() const { return *surface_; }
     std::shared_ptr<Drape> of(const Placement& place);
+    /// Forgets drapes that have grown larger than is kept.
+    void drop_large();
 
   private:
-    static constexpr std::size_t kMost = 4;  // 3 MB each of a drawing of a metre
+    static constexpr std::size_t kMost = 4;
 
     struct Kept {
         Placement place;
         std::shared_ptr<Drape> drape;
     };
     std::shared_ptr<const mesh::SurfaceQuery> surface_;
+    std::size_t large_;  // bytes
     std::mutex mutex_;
     std::list<Kept> kept_;  // last used first
 };
