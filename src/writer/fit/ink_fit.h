@@ -59,7 +59,9 @@ struct FitResult {
 /// 0.002, or 0.006 with `options.fair`, times `sharpness_of`, a sum over its knuckles.
 ///
 /// With `options.fair` the path and its half widths are made fair after each correction (`make_fair`), and wanted cells
-/// that no disc of 0.9 half widths within the area reaches weigh a tenth.
+/// that no disc within the area reaches weigh a tenth: discs of 0.9 half widths, less what exceeds a multiple of 4
+/// units, at most 32 units. Overlap and score count those cells so too, also against `options.weak`: results of fair
+/// and other fits do not compare.
 FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& target, const BrushHand& hand,
                        const Pace& pace, const FitOptions& options = {}, const std::vector<Station>& other = {});
 
