@@ -230,8 +230,12 @@ class AreaMaker {
             check_interrupt();
             FilmPart& other = film[one.over[k]];
             const Shape cover = cover_within(other, part.shape->clips);
-            shows |= cover.too_large();
-            cut_work_ += kCutWork + n_points_of(left.rings()) + n_points_of(cover.rings());
+            const std::size_t n = n_points_of(left.rings()) + n_points_of(cover.rings());
+            if (n > Shape::kMostPoints || cover.too_large()) {
+                shows = true;
+                continue;
+            }
+            cut_work_ += kCutWork + n;
             done = cut_work_ <= kMostCutWork;
             if (!done) break;
             Shape after = left.without(cover);
