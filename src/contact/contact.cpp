@@ -8,6 +8,7 @@
 
 #include "contact/node_contact.h"
 #include "contact/obb.h"
+#include "contact/planes_at_rest.h"
 #include "core/ease.h"
 
 namespace tuft::contact {
@@ -83,22 +84,6 @@ Recycled<NodeContact> find_tuft_contacts(const Step& w, const brush::TuftBend& t
         out.insert(out.end(), more.begin(), more.end());
     }
     return out;
-}
-
-/// The plane for a node that met `old` and came to rest where the surface is `now`. In a
-/// concave corner, where it would be thrown from wall to wall, it gets both walls' bisector.
-ContactPlane refresh_plane(const ContactPlane& old, const NodeContact& now, const Vec3& p, double radius) {
-    const ContactPlane& fresh = now.wedge;
-    if (fresh.beyond_normal != Vec3{0} || old.beyond_normal != Vec3{0}) return fresh;
-    const double z_old = glm::dot(p - old.origin, old.normal);
-    constexpr double kCorner = 0.87;  // cos 30°
-    if (glm::dot(old.normal, fresh.normal) > kCorner || z_old > 1.5 * radius) return fresh;
-    const Vec3 sum = old.normal + fresh.normal;
-    if (glm::dot(sum, sum) < 1.4) return fresh;  // the walls of a groove
-    const Vec3 n = glm::normalize(sum);
-    // Through the point where p would be in front of both.
-    const double needed = std::max(-z_old, -now.height) / glm::dot(n, fresh.normal);
-    return {p + needed * n, n};
 }
 
 /// Radii at rest of the nodes of all spines, in their order, metres.
@@ -196,48 +181,6 @@ std::optional<Bent> step_at_rest(const Step& w, brush::Tuft& tuft, double dt, co
     bent.contacts = find_tuft_contacts(w, before, bent.nodes, known);
     bent.contacts.resize(memory.contacts.size());
     return bent;
-}
-
-/// Radii of the nodes of a tuft: the trunk's, and one for those of all branches beyond.
-struct NodeRadii {
-    std::span<const double> trunk;
-    double root = 0;  ///< metres
-
-    double at(std::size_t i) const { return i < trunk.size() ? trunk[i] : root; }
-};
-
-/// How far the planes of a solve are off where its nodes came to rest.
-struct PlaneErrors {
-    double worst = 0;            ///< metres
-    Recycled<std::size_t> near;  ///< nodes near the surface, from the root
-};
-
-PlaneErrors find_plane_errors(const Recycled<NodeWalls>& walls, const Recycled<NodeContact>& found,
-                              std::span<const Vec3> nodes, const NodeRadii& radii) {
-    PlaneErrors errors;
-    errors.near.reserve(walls.size());
-    for (std::size_t i = walls.size(); i-- > 0;) {
-        const double z = walls[i].height(nodes[i]);
-        const double height = brush::height_over(found[i].wedge, nodes[i]);
-        if (std::min(z, height) > 2 * radii.at(i)) continue;
-        errors.worst = std::max(errors.worst, std::abs(z - height));
-        errors.near.push_back(i);
-    }
-    return errors;
-}
-
-/// Gives the nodes of `near` the walls that were found where they came to rest, from the root, which the walls of the
-/// next ones agree with.
-void renew_walls(Recycled<NodeWalls>& walls, const Recycled<NodeWalls>& before, const Recycled<std::size_t>& near,
-                 const Recycled<NodeContact>& found, std::span<const Vec3> nodes, const NodeRadii& radii,
-                 const Recycled<std::size_t>& lengths) {
-    for (const std::size_t i : near) {
-        const NodeWalls* inboard = is_root(lengths, i) ? nullptr : &walls[i + 1];
-        const NodeWalls& old = before[i];
-        walls[i] = i < radii.trunk.size() ? update_walls(old, found[i], nodes[i], radii.trunk[i], inboard)
-                                          : NodeWalls{found[i], {}};
-        if (!walls[i].in_groove()) walls[i].own.wedge = refresh_plane(old.own.wedge, found[i], nodes[i], radii.at(i));
-    }
 }
 
 /// Solves, looks where the nodes came to rest, and solves again where their planes were off.
