@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/cubic.h"
+
 namespace tuft::brush::truss {
 
 namespace {
@@ -13,9 +15,9 @@ struct Tuple {
     double depth = 0, force = 0, slope = 0;
 };
 
-double hermite(const Tuple& a, const Tuple& b, double depth) {
-    const double h = b.depth - a.depth, f = (depth - a.depth) / h, g = 1 - f;
-    return g * g * (1 + 2 * f) * a.force + f * f * (1 + 2 * g) * b.force + h * f * g * (g * a.slope - f * b.slope);
+double force_between(const Tuple& a, const Tuple& b, double depth) {
+    const double h = b.depth - a.depth;
+    return hermite(a.force, b.force, a.slope, b.slope, h, (depth - a.depth) / h);
 }
 
 }  // namespace
@@ -41,7 +43,7 @@ double head_force(double depth, double length_along, double tilt, const ForceLaw
                                        {1, 1, 1.2},
                                        {1.15, 1 + 0.15 * stiff, stiff}}};
     for (std::size_t k = 0; k + 1 < tuples.size(); ++k)
-        if (d < tuples[k + 1].depth) return law.bristles * hermite(tuples[k], tuples[k + 1], d);
+        if (d < tuples[k + 1].depth) return law.bristles * force_between(tuples[k], tuples[k + 1], d);
     return law.bristles * (tuples.back().force + stiff * (d - tuples.back().depth));
 }
 

@@ -4,46 +4,28 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/cubic.h"
+
 namespace tuft::brush {
 
 namespace {
 
-/// Cubic Hermite piece of length h at t in [0, 1], from end values and slopes.
-template <class T>
-T hermite(const T& p0, const T& p1, const T& m0, const T& m1, double h, double t) {
-    const double t2 = t * t, t3 = t2 * t;
-    return (2 * t3 - 3 * t2 + 1) * p0 + (t3 - 2 * t2 + t) * h * m0 + (3 * t2 - 2 * t3) * p1 + (t3 - t2) * h * m1;
-}
-
-template <class T>
-std::vector<T> slopes(const std::vector<T>& v, const std::vector<double>& s) {
+/// Slopes at the nodes of a curve with values v at the places s, each by `law` from the chords on both sides; an end
+/// has that of its chord.
+template <class T, class Law>
+std::vector<T> slopes(const std::vector<T>& v, const std::vector<double>& s, const Law& law) {
     const std::size_t n = v.size();
+    const auto step = [&](std::size_t i) { return s[i + 1] - s[i]; };
+    const auto chord = [&](std::size_t i) { return (v[i + 1] - v[i]) / step(i); };
     std::vector<T> m(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::size_t lo = i == 0 ? 0 : i - 1, hi = i + 1 == n ? i : i + 1;
-        if (lo + 1 == hi) {
-            m[i] = (v[hi] - v[lo]) / (s[hi] - s[lo]);
-            continue;
-        }
-        const double h0 = s[i] - s[lo], h1 = s[hi] - s[i];
-        m[i] = (h1 / (h0 + h1)) * ((v[i] - v[lo]) / h0) + (h0 / (h0 + h1)) * ((v[hi] - v[i]) / h1);
-    }
+    m.front() = chord(0);
+    m.back() = chord(n - 2);
+    for (std::size_t i = 1; i + 1 < n; ++i) m[i] = law(chord(i - 1), chord(i), step(i - 1), step(i));
     return m;
 }
 
-/// Fritsch–Carlson: slopes of a scalar that never overshoot its values.
 std::vector<double> monotone_slopes(const std::vector<double>& v, const std::vector<double>& s) {
-    std::vector<double> m = slopes(v, s);
-    for (std::size_t i = 0; i + 1 < v.size(); ++i) {
-        const double d = (v[i + 1] - v[i]) / (s[i + 1] - s[i]);
-        for (double* slope : {&m[i], &m[i + 1]}) {
-            if (*slope * d <= 0)
-                *slope = 0;
-            else if (std::abs(*slope) > 3 * std::abs(d))
-                *slope = 3 * d;
-        }
-    }
-    return m;
+    return slopes(v, s, monotone_slope);
 }
 
 }  // namespace
@@ -62,7 +44,7 @@ Recycled<Section> refine_sections(std::span<const Section> in, int between) {
         moment[i] = in[i].moment;
         pressure[i] = in[i].pressure;
     }
-    const std::vector<Vec3> mc = slopes(centre, s);
+    const std::vector<Vec3> mc = slopes(centre, s, parabola_slope<Vec3>);
     const std::vector<double> ma = monotone_slopes(a, s), mb = monotone_slopes(b, s), mm = monotone_slopes(moment, s),
                               mp = monotone_slopes(pressure, s);
     Recycled<Section> out;

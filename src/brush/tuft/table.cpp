@@ -6,6 +6,7 @@
 
 #include "brush/rod/rod.h"
 #include "brush/tuft/tuft.h"
+#include "core/cubic.h"
 
 namespace tuft::brush {
 
@@ -123,8 +124,7 @@ struct BetweenRows {
     T cubic(const T& before, const T& lo, const T& hi, const T& after) const {
         const T m0 = first ? hi - lo : (hi - before) * 0.5;
         const T m1 = last ? hi - lo : (after - lo) * 0.5;
-        const double t2 = t * t, t3 = t2 * t;
-        return (2 * t3 - 3 * t2 + 1) * lo + (t3 - 2 * t2 + t) * m0 + (3 * t2 - 2 * t3) * hi + (t3 - t2) * m1;
+        return hermite(lo, hi, m0, m1, 1, t);
     }
 };
 

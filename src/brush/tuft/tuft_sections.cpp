@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "brush/tuft/shape/lateral.h"
+#include "core/cubic.h"
 #include "core/ease.h"
 
 namespace tuft::brush {
@@ -87,12 +88,6 @@ Wide wide_axis(const SectionInput& in, const Recycled<Vec3>& t) {
 
 namespace {
 
-/// Cubic from p to q with slopes u and v (Hermite), at f of the path.
-double cubic(double p, double q, double u, double v, double f) {
-    const double g = 1 - f;
-    return g * g * (1 + 2 * f) * p + f * f * (1 + 2 * g) * q + f * g * (g * u - f * v);
-}
-
 /// Relative indentation of the hair round each node, 0 to 1, root first: indentation over radius, mean
 /// over the hair that the node stands for (its hat function), along the cubic through the nodes; hair that stands
 /// on the surface is not pressed flat. A contact that comes in between two nodes so begins smoothly at both.
@@ -111,7 +106,7 @@ Recycled<double> indentation_of(const SectionInput& in, const Recycled<Vec3>& t)
         for (int k = 0; k < kPoints; ++k) {
             const double f = (k + 0.5) / kPoints;
             const double r = std::lerp(in.obstacles[j].radius, in.obstacles[j + 1].radius, f);
-            const double depth = r - cubic(z[j], z[j + 1], l * c[j], l * c[j + 1], f);
+            const double depth = r - hermite(z[j], z[j + 1], c[j], c[j + 1], l, f);
             if (r <= 0 || depth <= 0) continue;
             const double lean = std::lerp(c[j], c[j + 1], f);
             const double indentation = std::min(depth / r, 1.0) * (1 - lean * lean) * l / kPoints;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "atlas/texels/log_map.h"
+#include "core/cubic.h"
 #include "core/ease.h"
 #include "footprint/outline/outline_parts.h"
 
@@ -53,28 +54,11 @@ Cut cut_of(const brush::Section& s, const Frame& frame, const brush::ContactPlan
     return cut;
 }
 
-/// Slope at a node of the parabola through it and its neighbours, from the slopes on both sides.
-double parabola_slope(double before, double after, double h_before, double h_after) {
-    return (h_after * before + h_before * after) / (h_before + h_after);
-}
-
-/// The same, limited so that the cubic is monotone where the nodes are [Fritsch1980].
-double monotone_slope(double before, double after, double h_before, double h_after) {
-    if (!(before * after > 0)) return 0;
-    const double most = 3 * std::min(std::abs(before), std::abs(after));
-    return std::clamp(parabola_slope(before, after, h_before, h_after), -most, most);
-}
-
 /// Slope of a monotone cubic at a node that keeps to the flatter side (Fritsch and Butland 1984).
 double cautious_slope(double before, double after, double h_before, double h_after) {
     if (!(before * after > 0)) return 0;
     const double w1 = 2 * h_after + h_before, w2 = h_after + 2 * h_before;
     return (w1 + w2) / (w1 / before + w2 / after);
-}
-
-double hermite(double p0, double p1, double m0, double m1, double h, double f) {
-    const double f2 = f * f, f3 = f2 * f;
-    return p0 + (p1 - p0) * (3 * f2 - 2 * f3) + h * (m0 * (f3 - 2 * f2 + f) + m1 * (f3 - f2));
 }
 
 /// The surface of a branch between its nodes: node parameter 0 (tip) … n − 1 (root).
@@ -124,8 +108,7 @@ class BranchSurface {
         const Cut &p = nodes_[i], &q = nodes_[i + 1];
         const Slope &g = slopes_[i], &k = slopes_[i + 1];
         Cut cut;
-        cut.centre = {hermite(p.centre.x, q.centre.x, g.centre.x, k.centre.x, h, f),
-                      hermite(p.centre.y, q.centre.y, g.centre.y, k.centre.y, h, f)};
+        cut.centre = hermite(p.centre, q.centre, g.centre, k.centre, h, f);
         cut.z = hermite(p.z, q.z, g.z, k.z, h, f);
         cut.a = hermite(p.a, q.a, g.a, k.a, h, f);
         cut.b = hermite(p.b, q.b, g.b, k.b, h, f);
@@ -204,7 +187,7 @@ class BranchSurface {
             }
             const double h0 = steps_[i - 1], h1 = steps_[i];
             const auto slope = [&](auto get, auto law) { return law(rate(i - 1, get), rate(i, get), h0, h1); };
-            slopes_[i].centre = (h1 * rate(i - 1, centre) + h0 * rate(i, centre)) / (h0 + h1);
+            slopes_[i].centre = parabola_slope(rate(i - 1, centre), rate(i, centre), h0, h1);
             if (i <= cap_) {
                 // The point's round end goes over into long stretches.
                 slopes_[i].z = slope(z, cautious_slope);
@@ -225,12 +208,12 @@ class BranchSurface {
     std::size_t cap_ = 0;  // nodes that close the tip
 };
 
-/// Part [begin, end] of the surface that touches the surface.
+/// Part [begin, end] of the surface that touches.
 struct Stretch {
     double begin = 0, end = 0;
 };
 
-/// Parameter between `out` (not touching) and `in` (touching) where the surface meets the surface.
+/// Parameter between `out` (not touching) and `in` (touching) where the tuft meets the surface.
 double find_meeting_point(const BranchSurface& surface, double out, double in) {
     for (int i = 0; i < 26; ++i) {
         const double middle = 0.5 * (out + in);

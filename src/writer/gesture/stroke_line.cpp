@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/cubic.h"
 #include "core/text/units.h"
 
 namespace tuft::writer {
@@ -108,9 +109,7 @@ std::vector<Vec2> curve_through(std::span<const Vec2> line) {
         if (to == Vec2(0)) to = 2 * glm::dot(u, from) * u - from;
         const int pieces = std::max(1, static_cast<int>(std::ceil(length / StrokeLine::kApart)));
         for (int k = 1; k <= pieces; ++k) {
-            const double t = static_cast<double>(k) / pieces, s = 1 - t;
-            out.push_back(s * s * (1 + 2 * t) * p[i] + t * t * (3 - 2 * t) * p[i + 1] +
-                          length * (s * s * t * from - s * t * t * to));
+            out.push_back(hermite(p[i], p[i + 1], from, to, length, static_cast<double>(k) / pieces));
         }
     }
     return out;
