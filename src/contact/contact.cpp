@@ -183,81 +183,105 @@ std::optional<Bent> step_at_rest(const Step& w, brush::Tuft& tuft, double dt, co
     return bent;
 }
 
-/// Solves, looks where the nodes came to rest, and solves again where their planes were off.
-Bent solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memory) {
-    const Recycled<double> radii = node_radii(tuft);
-    const Recycled<std::size_t> lengths = spine_lengths(tuft);
-    const NodeRadii node_radius{radii, radii[tuft.trunk().rest_radius.size() - 1]};
+/// A tuft bent against the walls that its nodes were given.
+struct Attempt {
+    Recycled<NodeWalls> walls;
+    StepPlanes planes;
+    brush::TuftState state;
+    Recycled<Vec3> nodes;  // where they lie then
+};
+
+/// What the attempts of one step have in common.
+struct RestSearch {
+    const Step& w;
+    double dt;
+    Recycled<double> radii;  // of the spines' nodes
+    Recycled<std::size_t> lengths;
+    Recycled<ContactPlane> beside;  // walls of the sides
+
+    NodeRadii node_radius(const brush::Tuft& tuft) const { return {radii, radii[tuft.trunk().rest_radius.size() - 1]}; }
+};
+
+Attempt bend_against(Recycled<NodeWalls> walls, const RestSearch& in, brush::Tuft& tuft, brush::StepStart& start) {
+    StepPlanes planes(walls, in.radii.size(), in.beside);
+    brush::TuftState state = brush::step(tuft, in.w.pose, planes.planes, in.dt, planes.walls, &start);
+    return {std::move(walls), std::move(planes), std::move(state), brush::predicted_nodes(tuft, in.w.pose)};
+}
+
+/// Bends the tuft against the walls that were predicted, looks where its nodes came to rest, and bends it again where
+/// the walls were off. `verified` becomes the contacts of the spines' nodes there, if the walls agree with them.
+Attempt find_rest(Recycled<NodeWalls> walls, const Recycled<NodeContact>& predicted, const RestSearch& in,
+                  brush::Tuft& tuft, Recycled<NodeContact>& verified) {
+    thread_local brush::TuftBend before, solved;  // keep their memory
+    thread_local brush::StepStart start;
+    const Step& w = in.w;
+    const NodeRadii node_radius = in.node_radius(tuft);
     const bool was_split = tuft.split;
-    const Recycled<Vec3>& nodes = w.nodes;
+    before = tuft;
+    start.known = start.in_parts = false;
+    Attempt last = bend_against(std::move(walls), in, tuft, start);
+    for (int pass = 0; pass < w.options.max_refreshes && last.state.touching; ++pass) {
+        if (tuft.split != was_split && last.nodes.size() < w.nodes.size()) break;
+        const auto compared = std::span(last.nodes).first(w.nodes.size());
+        Recycled<NodeContact> found =
+            find_tuft_contacts(w, before, compared, {predicted, w.nodes, 0.5 * w.options.refresh_error});
+        const PlaneErrors errors = find_plane_errors(last.walls, found, compared, node_radius);
+        if (errors.worst < w.options.refresh_error) {
+            verified = std::move(found);
+            verified.resize(in.radii.size());
+            break;
+        }
+        Recycled<NodeWalls> renewed = last.walls;
+        renew_walls(renewed, last.walls, errors.near, found, compared, node_radius, in.lengths);
+        std::swap(static_cast<brush::TuftBend&>(tuft), solved);
+        static_cast<brush::TuftBend&>(tuft) = before;
+        Attempt next = bend_against(std::move(renewed), in, tuft, start);
+        next.state.iterations += last.state.iterations;
+        next.state.work += last.state.work;
+        // Between two faces of a rim the planes at the new places may leave no rest: the solve ends anywhere, with a
+        // force of many newtons. The planes before are off by less than a tuft moves in a sample.
+        if (!next.state.converged && last.state.converged) {
+            last.state.iterations = next.state.iterations;
+            last.state.work = next.state.work;
+            std::swap(static_cast<brush::TuftBend&>(tuft), solved);
+            break;
+        }
+        last = std::move(next);
+    }
+    return last;
+}
+
+/// Bends the tuft to where its nodes rest on the surface, and stores that rest for the next sample.
+Bent solve(const Step& w, brush::Tuft& tuft, double dt, Memory& memory) {
     Rest& rest = memory.rest;
-    const bool still = are_still(rest.nodes, nodes, w.options);
+    const bool still = are_still(rest.nodes, w.nodes, w.options);
     if (still && (rest.verified || rest.searches >= kMostRestSearches)) {
         if (auto bent = step_at_rest(w, tuft, dt, memory)) return std::move(*bent);
     }
-    Bent out;
-    auto& [state, planes, now, contacts] = out;
-    Recycled<NodeContact> predicted = find_tuft_contacts(w, tuft, nodes, {.contacts = memory.contacts});
-    const Recycled<ContactPlane> beside = find_side_walls(w, tuft, predicted);
-    Recycled<NodeWalls> walls = find_chain_walls(w.surface, {lengths, nodes, predicted, radii, memory.walls}, w.search);
-    StepPlanes met(walls, radii.size(), beside);
+    RestSearch in{w, dt, node_radii(tuft), spine_lengths(tuft), {}};
+    Recycled<NodeContact> predicted = find_tuft_contacts(w, tuft, w.nodes, {.contacts = memory.contacts});
+    in.beside = find_side_walls(w, tuft, predicted);
+    Recycled<NodeWalls> walls =
+        find_chain_walls(w.surface, {in.lengths, w.nodes, predicted, in.radii, memory.walls}, w.search);
     rest.nodes.clear();
     rest.searches = still ? rest.searches + 1 : 1;
-    rest.verified = false;
 
-    thread_local brush::TuftBend before, solved;  // keep their memory
-    thread_local brush::StepStart start;
-    before = tuft;
-    start.known = start.in_parts = false;
-    state = brush::step(tuft, w.pose, met.planes, dt, met.walls, &start);
-    now = brush::predicted_nodes(tuft, w.pose);
-    for (int pass = 0; pass < w.options.max_refreshes && state.touching; ++pass) {
-        if (tuft.split != was_split && now.size() < nodes.size()) break;
-        const auto compared = std::span(now).first(nodes.size());
-        const Recycled<NodeContact> found =
-            find_tuft_contacts(w, before, compared, {predicted, nodes, 0.5 * w.options.refresh_error});
-        const PlaneErrors errors = find_plane_errors(walls, found, compared, node_radius);
-        if (errors.worst < w.options.refresh_error) {
-            contacts = found;
-            contacts.resize(radii.size());
-            rest.verified = true;
-            break;
-        }
-        Recycled<NodeWalls> walls_before = walls;
-        renew_walls(walls, walls_before, errors.near, found, compared, node_radius, lengths);
-        StepPlanes met_before = std::move(met);
-        met = StepPlanes(walls, radii.size(), beside);
-        Recycled<Vec3> nodes_before = std::move(now);
-        std::swap(static_cast<brush::TuftBend&>(tuft), solved);
-        static_cast<brush::TuftBend&>(tuft) = before;
-        brush::TuftState former = std::move(state);
-        state = brush::step(tuft, w.pose, met.planes, dt, met.walls, &start);
-        now = brush::predicted_nodes(tuft, w.pose);
-        state.iterations += former.iterations;
-        state.work += former.work;
-        // Between two faces of a rim the planes at the new places may leave no rest: the solve ends anywhere, with a
-        // force of many newtons. The planes before are off by less than a tuft moves in a sample.
-        if (!state.converged && former.converged) {
-            former.iterations = state.iterations;
-            former.work = state.work;
-            walls = std::move(walls_before);
-            met = std::move(met_before);
-            now = std::move(nodes_before);
-            std::swap(static_cast<brush::TuftBend&>(tuft), solved);
-            state = std::move(former);
-            break;
-        }
+    Bent out;
+    Attempt last = find_rest(std::move(walls), predicted, in, tuft, out.contacts);
+    rest.verified = !out.contacts.empty();
+    if (last.state.converged) {
+        rest.planes = last.planes.planes;
+        rest.walls = last.planes.walls;
+        rest.nodes = last.nodes;
     }
-    if (state.converged) {
-        rest.planes = met.planes;
-        rest.walls = met.walls;
-        rest.nodes = now;
-    }
-    planes = std::move(met.planes);
     memory.walls.clear();
-    if (any_in_groove(walls)) memory.walls.assign(walls.begin(), walls.begin() + static_cast<long>(radii.size()));
-    if (contacts.empty()) predicted.resize(radii.size());
-    memory.contacts = contacts.empty() ? std::move(predicted) : contacts;
+    if (any_in_groove(last.walls))
+        memory.walls.assign(last.walls.begin(), last.walls.begin() + static_cast<long>(in.radii.size()));
+    if (!rest.verified) predicted.resize(in.radii.size());
+    memory.contacts = rest.verified ? out.contacts : std::move(predicted);
+    out.planes = std::move(last.planes.planes);
+    out.state = std::move(last.state);
+    out.nodes = std::move(last.nodes);
     return out;
 }
 

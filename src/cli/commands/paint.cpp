@@ -309,6 +309,28 @@ nlohmann::json result_json(const Painted& painted, const std::vector<stroke::Jou
     return j;
 }
 
+Outputs checked_outputs(const Paint& a) {
+    Outputs outputs{a.output.project, a.output.exported, a.output.preview, a.view, {}};
+    check_outputs(outputs);
+    check_output(a.output.forces);
+    return outputs;
+}
+
+bool writes_into_its_project(const Paint& a) {
+    std::error_code no_matter;
+    return a.output.project.empty() || std::filesystem::equivalent(a.output.project, a.model, no_matter);
+}
+
+// What went otherwise than the person may think.
+void note_painted(const Painted& painted, const std::vector<stroke::JournalEntry>& strokes,
+                  const stroke::Document& painting, const stroke::Model& model, Console& console) {
+    note_misses(painted.reports, painted.done, console);
+    note_missed_areas(painted, console);
+    note_dry(painted.reports, console);
+    note_locked(painted, strokes, painting.parts().table(), console);
+    note_inside(painted.reports, painted.done, model.mesh->bounds, console);
+}
+
 }  // namespace
 
 int run(const Paint& a) {
@@ -358,16 +380,11 @@ std::vector<stroke::JournalEntry> draw_with_pointer(const std::vector<stroke::Jo
 }
 
 int paint(const Paint& a, const StrokeSource& source) {
-    Outputs outputs{a.output.project, a.output.exported, a.output.preview, a.view, {}};
-    check_outputs(outputs);
-    check_output(a.output.forces);
+    Outputs outputs = checked_outputs(a);
     Console console(a.common.quiet);
     const auto start = Clock::now();
 
-    std::error_code no_matter;
-    const bool goes_on = is_project_file(a.model);
-    const bool in_place =
-        goes_on && (a.output.project.empty() || std::filesystem::equivalent(a.output.project, a.model, no_matter));
+    const bool goes_on = is_project_file(a.model), in_place = goes_on && writes_into_its_project(a);
     const auto reserved = in_place ? std::nullopt : reserve(a.output.project, console);
     const auto before = goes_on ? open_project(a.model, in_place ? io::Access::write : io::Access::read, console,
                                                model_cache(a.surface))
@@ -409,11 +426,7 @@ int paint(const Paint& a, const StrokeSource& source) {
     std::optional<io::Project> project = output_project(a, in_place, before.get(), outputs.frame, painting, strokes);
     Painted painted = paint_strokes(strokes, painting, project, a, console, start);
     painted.prepared = prepared;
-    note_misses(painted.reports, painted.done, console);
-    note_missed_areas(painted, console);
-    note_dry(painted.reports, console);
-    note_locked(painted, strokes, painting.parts().table(), console);
-    note_inside(painted.reports, painted.done, model.mesh->bounds, console);
+    note_painted(painted, strokes, painting, model, console);
     show_layers(painting, a.view.layers);
     write_outputs(outputs, painting, console);
     write_forces(painted.reports, a.output.forces);

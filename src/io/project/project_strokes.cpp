@@ -90,6 +90,53 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
     }
 }
 
+namespace {
+
+/// Where a stroke of the table lies on the model.
+stroke::Placement placement_of(const SQLite::Column& mapping_word, const SQLite::Column& numbers, const Message& what,
+                               const std::filesystem::path& path) {
+    stroke::Placement placement;
+    const auto mapping =
+        stroke::surface_mapping_named(text_of(mapping_word, kMostWord, path, "the mapping of a stroke"));
+    if (!mapping) throw Error(Message("{} is mapped onto the model in a way that is not known", what));
+    placement.mapping = *mapping;
+    std::array<double, 9> p{};
+    if (numbers.getBytes() != static_cast<int>(sizeof p)) throw Error(Message("{} has no valid placement", what));
+    std::memcpy(p.data(), numbers.getBlob(), sizeof p);
+    placement.origin = {p[0], p[1], p[2]};
+    placement.right = {p[3], p[4], p[5]};
+    placement.down = {p[6], p[7], p[8]};
+    return placement;
+}
+
+/// Unpacks the samples of the strokes of a table, and looks at the free memory from time to time.
+class SampleReader {
+  public:
+    explicit SampleReader(const std::filesystem::path& path) : path_(path) {}
+
+    std::vector<stroke::StrokeSample> read(std::int64_t count, const SQLite::Column& blob, const Message& what) {
+        if (count < 0 || count > kMaxSamples) throw Error(Message("{} has an impossible number of samples", what));
+        const auto size = static_cast<std::size_t>(blob.getBytes());
+        const auto n_samples = static_cast<std::size_t>(count);
+        const bool rolled = packed_bytes(blob.getBlob(), size) > kSampleColumns * n_samples * sizeof(double);
+        const std::size_t numbers = (rolled ? kRolledColumns : kSampleColumns) * n_samples;
+        check_packed(blob.getBlob(), size, numbers * sizeof(double), what);
+        // Its columns, and them as they are unpacked, go again.
+        bytes_ += sizeof(stroke::StrokeSample) * static_cast<std::uintmax_t>(count);
+        if (const auto now = 3 * numbers * sizeof(double); bytes_ - checked_ + now > kLookEvery)
+            check_memory(path_, bytes_ - std::exchange(checked_, bytes_) + now);
+        std::vector<double> fields(numbers);
+        unpack(blob.getBlob(), size, fields.data(), numbers, kSamples, what);
+        return samples_of(fields, n_samples);
+    }
+
+  private:
+    const std::filesystem::path& path_;
+    std::uintmax_t bytes_ = 0, checked_ = 0;  // of all samples; of those that memory was looked at for
+};
+
+}  // namespace
+
 std::vector<stroke::JournalEntry> load_strokes(SQLite::Database& db, const std::filesystem::path& path,
                                                const ProgressFn& progress) {
     const std::int64_t n = db.execAndGet("SELECT count(*) FROM strokes").getInt64();
@@ -99,7 +146,7 @@ std::vector<stroke::JournalEntry> load_strokes(SQLite::Database& db, const std::
                              "SELECT id, brush, ink, seed, label, settings, hidden, flat, laying, placement, "
                              "sample_count, samples FROM strokes ORDER BY ordinal");
     std::vector<stroke::JournalEntry> entries;
-    std::uintmax_t bytes = 0, checked = 0;
+    SampleReader samples(path);
     while (select.executeStep()) {
         report(progress, "reading", 0);
         stroke::EntryColumns columns;
@@ -116,31 +163,8 @@ std::vector<stroke::JournalEntry> load_strokes(SQLite::Database& db, const std::
         const std::string json = text(5, kMostSettings, "the settings of a stroke");
         columns.hidden = select.getColumn(6).getInt() != 0;
         t.flat = select.getColumn(7).getInt() != 0;
-        const auto mapping = stroke::surface_mapping_named(text(8, kMostWord, "the mapping of a stroke"));
-        if (!mapping) throw Error(Message("{} is mapped onto the model in a way that is not known", what));
-        t.placement.mapping = *mapping;
-        const SQLite::Column placement = select.getColumn(9);
-        std::array<double, 9> p{};
-        if (placement.getBytes() != static_cast<int>(sizeof p)) throw Error(Message("{} has no valid placement", what));
-        std::memcpy(p.data(), placement.getBlob(), sizeof p);
-        t.placement.origin = {p[0], p[1], p[2]};
-        t.placement.right = {p[3], p[4], p[5]};
-        t.placement.down = {p[6], p[7], p[8]};
-        const std::int64_t count = select.getColumn(10).getInt64();
-        if (count < 0 || count > kMaxSamples) throw Error(Message("{} has an impossible number of samples", what));
-        const SQLite::Column blob = select.getColumn(11);
-        const auto size = static_cast<std::size_t>(blob.getBytes());
-        const auto n_samples = static_cast<std::size_t>(count);
-        const bool rolled = packed_bytes(blob.getBlob(), size) > kSampleColumns * n_samples * sizeof(double);
-        const std::size_t numbers = (rolled ? kRolledColumns : kSampleColumns) * n_samples;
-        check_packed(blob.getBlob(), size, numbers * sizeof(double), what);
-        // Its columns, and them as they are unpacked, go again.
-        bytes += sizeof(stroke::StrokeSample) * static_cast<std::uintmax_t>(count);
-        if (const auto now = 3 * numbers * sizeof(double); bytes - checked + now > kLookEvery)
-            check_memory(path, bytes - std::exchange(checked, bytes) + now);
-        std::vector<double> fields(numbers);
-        unpack(blob.getBlob(), size, fields.data(), numbers, kSamples, what);
-        t.samples = samples_of(fields, n_samples);
+        t.placement = placement_of(select.getColumn(8), select.getColumn(9), what, path);
+        t.samples = samples.read(select.getColumn(10).getInt64(), select.getColumn(11), what);
         stroke::JournalEntry entry = stroke::entry_of(std::move(columns), json);
         try {
             stroke::check_samples(stroke::samples_of(entry));

@@ -177,22 +177,30 @@ void HairContact::add_tone(Stamp& stamp, const TuftInHand& tuft, const footprint
     stamp.tone = tone_.at(shape.edge, contact.frame, contrast);
 }
 
+void HairContact::find_cells(const TuftInHand& tuft, const contact::Result& contact,
+                             std::span<const footprint::Trail> trails) {
+    const brush::Bundles& bundles = tuft.brush.tuft.bundles;
+    const std::vector<double>& ends = tuft.brush.reservoir.layout.cell_ends;
+    if (const brush::CarriedShape* carried = tuft.brush.tuft.carried.get())
+        cells_ = footprint::shape_contact_cells(
+            footprint::shape_contact_points(*carried, contact.tuft.shape, contact.frame, kSkinFilm),
+            bundles.place.size(), ends);
+    else
+        cells_ = footprint::contact_cells(trails, bundles, static_cast<int>(contact.tuft.branches.size()), ends);
+    cells_since_.resize(cells_.size(), 0);
+    for (std::size_t i = 0; i < cells_since_.size(); ++i) cells_since_[i] += cells_[i];
+}
+
 Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, HairShape shape,
                               const MotionTracker& motion, double dt) {
     const double length = tuft.preset().length;
     const brush::Bundles& bundles = tuft.brush.tuft.bundles;
-    const std::vector<double>& ends = tuft.brush.reservoir.layout.cell_ends;
     const brush::CarriedShape* carried = tuft.brush.tuft.carried.get();
     const bool by_lines = carried && !carried->lines.empty();
     const auto branches = static_cast<int>(contact.tuft.branches.size());
     if (!motion.touching) tracks_ = {};
     Recycled<footprint::Trail>& trails = shape.trails;
-    cells_ = carried ? footprint::shape_contact_cells(
-                           footprint::shape_contact_points(*carried, contact.tuft.shape, contact.frame, kSkinFilm),
-                           bundles.place.size(), ends)
-                     : footprint::contact_cells(trails, bundles, branches, ends);
-    cells_since_.resize(cells_.size(), 0);
-    for (std::size_t i = 0; i < cells_since_.size(); ++i) cells_since_[i] += cells_[i];
+    find_cells(tuft, contact, trails);
     const Wetness wetness = bundle_wetness(tuft, motion, tuft.stress(), dt);
 
     by_hair_ = wetness.lack > 0 && !options_.always_closed && !brush::is_foam(tuft.preset()) && !by_lines;

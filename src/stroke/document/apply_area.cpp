@@ -107,6 +107,31 @@ void find_cover(TileArea& out, const FlatTexels::Tile& tile, const FlatArea& are
     }
 }
 
+/// The part of what a texel holds that goes before the coat comes: its cover times the opacity there.
+void set_removal(TileArea& part, const std::vector<AreaStop>& stops) {
+    for (int t = 0; t < atlas::kTileTexels; ++t) {
+        const auto [stop, towards] = part.blend[t];
+        const double next = stops[std::min(stop + 1, stops.size() - 1)].opacity;
+        const double opacity = stops[stop].opacity + towards * (next - stops[stop].opacity);
+        part.remove[t] = part.cover[t] * static_cast<float>(opacity);
+    }
+}
+
+/// The films of the coat from one stop to the next. Returns whether there is any.
+bool set_films(ink::Coat& coat, const TileArea& part, std::size_t stop, std::span<const double> films) {
+    const double from = films[stop], to = films[std::min(stop + 1, films.size() - 1)];
+    bool any = false;
+    for (int t = 0; t < atlas::kTileTexels; ++t) {
+        const auto [own, towards] = part.blend[t];
+        const double film = from + towards * (to - from);
+        coat.film[t] = own == stop ? part.cover[t] * static_cast<float>(film) : 0.0f;
+        // Amounts, not fractions, are linear: the thicker film has more of a say.
+        coat.towards[t] = own == stop && film > 0 ? static_cast<float>(towards * to / film) : 0.0f;
+        any = any || coat.film[t] > 0;
+    }
+    return any;
+}
+
 }  // namespace
 
 AreaRaster::AreaRaster(const FlatArea& area, double cell, const AreaRaster* same) : cell_(cell) {
@@ -207,12 +232,7 @@ FillResult apply_area(const Fill& fill, const PaintTarget& target, const FlatTex
         for (std::size_t i = begin; i < end; ++i) {
             find_cover(parts[i], *tiles[i], area, cover, width);
             if (parts[i].any && target.mask) target.mask->apply(tiles[i]->slot, parts[i].cover);
-            for (int t = 0; t < atlas::kTileTexels; ++t) {
-                const auto [stop, towards] = parts[i].blend[t];
-                const double next = area.stops[std::min(stop + 1, area.stops.size() - 1)].opacity;
-                const double opacity = area.stops[stop].opacity + towards * (next - area.stops[stop].opacity);
-                parts[i].remove[t] = parts[i].cover[t] * static_cast<float>(opacity);
-            }
+            set_removal(parts[i], area.stops);
         }
     });
     FillResult result;
@@ -233,19 +253,9 @@ FillResult apply_area(const Fill& fill, const PaintTarget& target, const FlatTex
             const std::uint32_t slot = tiles[i]->slot;
             ink::take_part(target.canvas, slot, map.tiles[slot].area, part.remove);
             for (std::size_t stop = 0; stop < area.stops.size(); ++stop) {
-                const std::size_t next = std::min(stop + 1, area.stops.size() - 1);
-                bool any = false;
-                for (int t = 0; t < atlas::kTileTexels; ++t) {
-                    const auto [own, towards] = part.blend[t];
-                    const double film = films[stop] + towards * (films[next] - films[stop]);
-                    coat.film[t] = own == stop ? part.cover[t] * static_cast<float>(film) : 0.0f;
-                    // Amounts, not fractions, are linear: the thicker film has more of a say.
-                    coat.towards[t] = own == stop && film > 0 ? static_cast<float>(towards * films[next] / film) : 0.0f;
-                    any = any || coat.film[t] > 0;
-                }
-                if (!any) continue;
+                if (!set_films(coat, part, stop, films)) continue;
                 coat.first = mixes[stop];
-                coat.second = mixes[next];
+                coat.second = mixes[std::min(stop + 1, area.stops.size() - 1)];
                 deposited[i] += ink::add_coat(target.canvas, slot, map.tiles[slot].area, coat, target.capacity(slot));
             }
         }

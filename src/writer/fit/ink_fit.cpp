@@ -127,10 +127,19 @@ struct TriedInk {
     double unit = 1;                     ///< metres, of the stations
 };
 
+/// The station, of n, at whose time ink first covered a place.
+std::size_t station_that_inked(const Vec2& p, const TriedInk& tried, std::size_t n) {
+    const std::vector<stroke::StrokeSample>& samples = tried.trace.samples;
+    const std::size_t touch = samples.size() - 1 - n;  // samples before that of the first station
+    const auto later = std::lower_bound(samples.begin(), samples.end(), tried.ink.when(p * tried.unit),
+                                        [](const stroke::StrokeSample& a, double time) { return a.time < time; });
+    const auto index = static_cast<std::size_t>(later - samples.begin());
+    return std::min(index - std::min(index, touch), n - 1);
+}
+
 /// Compares the ink of a try with the target. `sides`: stations whose directions part left and right.
 Errors errors_of(const std::vector<Station>& s, const std::vector<Station>& sides, const FitTarget& target,
                  const TriedInk& tried) {
-    const stroke::StrokeSamples& trace = tried.trace;
     const std::vector<float>& coverage = tried.coverage;
     const Cells& cells = target.wanted;
     const std::size_t n = s.size();
@@ -140,16 +149,8 @@ Errors errors_of(const std::vector<Station>& s, const std::vector<Station>& side
     const double part = cells.cell * cells.cell / spacing;
     double head = 0, tail = 0;
     Reach reach_head, reach_tail;
-    const std::size_t touch = trace.samples.size() - 1 - n;  // samples before that of the first station
     const Vec2 out_head = -direction_at(sides, 0), out_tail = direction_at(sides, n - 1);
-    // The station at whose time ink first covered a place.
-    const auto station_of = [&](const Vec2& p) {
-        const double when = tried.ink.when(p * tried.unit);
-        const auto later = std::lower_bound(trace.samples.begin(), trace.samples.end(), when,
-                                            [](const stroke::StrokeSample& a, double time) { return a.time < time; });
-        const auto index = static_cast<std::size_t>(later - trace.samples.begin());
-        return std::min(index - std::min(index, touch), n - 1);
-    };
+    const auto station_of = [&](const Vec2& p) { return station_that_inked(p, tried, n); };
     for (int j = 0; j < cells.height; ++j)
         for (int i = 0; i < cells.width; ++i) {
             const Vec2 p = cells.centre(i, j);
