@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
 # check_documents.sh SOURCE: what documents and comments name exists.
 # - Documents: the targets of links, paths of files in `back quotes`, files of the code by their bare names, such as
-#   (deposit.h). READMEs of src/: names of functions and types in `back quotes`. Names with a capital NAME are patterns.
+#   (deposit.h). READMEs of src/: names of functions and types in `back quotes`, and in the file that is named behind one,
+#   `choose_step` (`film/film_step.cpp`). Names with a capital NAME are patterns.
+# - Commands in documents: subcommands of `tuft` and their options, suites of tests.
 # - Comments of headers: names in `back quotes`.
 # - Keys of sources, such as [Huang2018], and the folders in the table of modules in src/README.md.
 set -euo pipefail
@@ -16,6 +18,8 @@ code() {
 }
 code -print | sed 's|.*/||' | sort -u > "$lists/files"
 code -print0 | xargs -0 grep -ohE '[A-Za-z_][A-Za-z0-9_]*' | sort -u > "$lists/names"
+grep -rhoE 'add_subcommand\("[a-z-]+|command\("[a-z-]+' src/cli | sed 's/.*"//' | sort -u > "$lists/subcommands"
+grep -rhoE --include='*.cpp' --include='*.h' -e '--[a-z][a-z-]+' src/cli | sort -u > "$lists/options"
 while read -r document; do
   folder=$(dirname "$document")
   while read -r target; do
@@ -31,7 +35,25 @@ while read -r document; do
     missing "$document" "$file"
   done < <(grep -oE '(^|[^A-Za-z0-9_*])[A-Za-z0-9_]+\.(h|cpp)\b' "$lists/text" | grep -oE '[A-Za-z0-9_]+\.(h|cpp)$' |
     grep -v NAME | sort -u | comm -23 - "$lists/files")
+  while read -r command; do
+    read -r _ name _ <<<"$command"
+    if [[ $name == [a-z]* && $name != *.* ]]; then
+      grep -qx -- "$name" "$lists/subcommands" || missing "$document" "tuft $name"
+    fi
+    while read -r option; do
+      missing "$document" "option $option of tuft $name"
+    done < <(grep -oE '(^| )--[a-z][a-z-]+' <<<"$command" | tr -d ' ' | sort -u | comm -23 - "$lists/options")
+  done < <(sed -E ':join; /\\$/{N; s/\\\n//; b join}; s/ # .*//' "$document" |
+    grep -oE '(^    |`)tuft( [^`]*)' | grep -vE '^`?tuft( |$)*\.$' | sed -E 's/^(    |`)//' | sort -u)
+  while read -r suite; do
+    grep -qrE "TEST(_F|_P)?\($suite," tests --include='*.cpp' || missing "$document" "suite $suite"
+  done < <(grep -oE "(gtest_filter=|ctest [^\`]*-R )['^]*[A-Z][A-Za-z]+" "$document" | grep -oE '[A-Z][A-Za-z]+$' || true)
   [[ $document == src/*/README.md || $document == src/README.md ]] || continue
+  while read -r name file; do
+    for place in "$file" "src/$file" "$folder/$file"; do [[ -e $place ]] && break; done
+    [[ ! -e $place ]] || grep -qw -- "$name" "$place" || missing "$document" "$name is not in $file"
+  done < <(tr '\n' ' ' < "$lists/text" | grep -oE '`[A-Za-z_]+(\([^`]*\))?` \(`?[A-Za-z0-9_./-]+\.(h|cpp)' |
+    sed -E 's/^`([A-Za-z_]+).*\(`?([^ ]+)$/\1 \2/' || true)
   while read -r name; do
     missing "$document" "$name"
   done < <(grep -oE '`[A-Za-z_][A-Za-z0-9_:]*(\([^`]*\))?`' "$lists/text" | tr -d '`' | sed -E 's/\(.*//; s/.*:://' |
