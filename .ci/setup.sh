@@ -3,7 +3,7 @@
 
 packages_build=(build-essential cmake ninja-build pkg-config git ccache gettext
   libboost-dev libopenmesh-dev libcgal-dev libeigen3-dev libembree-dev libtbb-dev libglm-dev
-  libopenimageio-dev openimageio-tools libtinygltf-dev libsqlite3-dev libsqlitecpp-dev
+  libopenimageio-dev openimageio-tools libopencolorio-dev libtinygltf-dev libsqlite3-dev libsqlitecpp-dev
   libzstd-dev libpng-dev zlib1g-dev libxxhash-dev libpugixml-dev libfontconfig-dev libfreetype-dev libharfbuzz-dev libassimp-dev libocct-data-exchange-dev libdraco-dev libmeshoptimizer-dev libpodofo-dev libpolyclipping-dev libtomlplusplus-dev libcli11-dev libfmt-dev
   nlohmann-json3-dev libstb-dev libbenchmark-dev
   libglfw3-dev libxrandr-dev libxi-dev libimgui-dev libepoxy-dev libgl-dev libegl-dev libspnav-dev)

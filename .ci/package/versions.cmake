@@ -17,7 +17,7 @@ tuft_version_in(OpenMesh/Core/System/config.h "^#define OM_VERSION 0x([0-9]+)0([
 
 set(tuft_library_versions)
 set(PNG_VERSION ${PNG_VERSION_STRING})
-foreach(library assimp CGAL CLI11 draco Eigen3 embree fmt fontconfig Freetype glm harfbuzz meshoptimizer nlohmann_json OpenCASCADE OpenImageIO OpenMesh PNG podofo polyclipping pugixml SQLite3 SQLiteCpp TBB
+foreach(library assimp CGAL CLI11 draco Eigen3 embree fmt fontconfig Freetype glm harfbuzz meshoptimizer nlohmann_json OpenCASCADE OpenColorIO OpenImageIO OpenMesh PNG podofo polyclipping pugixml SQLite3 SQLiteCpp TBB
     TinyGLTF tomlplusplus xxhash zstd glfw3 imgui epoxy spnav)
   if(${library}_VERSION)
     string(APPEND tuft_library_versions "        {\"${library}\", \"${${library}_VERSION}\"},\n")

@@ -1,5 +1,6 @@
 #include "ink/spectra/colour_space.h"
 
+#include <OpenColorIO/OpenColorIO.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,20 +20,69 @@ void expect_matrix(const Matrix3& m, const Matrix3& expected, double tolerance) 
 }
 
 TEST(ColourSpace, MatricesAreThePublishedOnes) {
-    // CSS Color 4, sample code; and OpenColorIO's built-in "ACEScg to linear Rec. 709" inverted: both give eight
-    // digits, from whites with four digits and with five.
+    // CSS Color 4, sample code, and ACES, "AP1 to linear Rec. 709" inverted: eight digits, the last one rounded.
     expect_matrix(from_linear_srgb(ColourSpace::display_p3),
                   {{{0.82246197, 0.17753803, 0}, {0.03319420, 0.96680580, 0}, {0.01708263, 0.07239744, 0.91051993}}},
-                  2e-6);
+                  1e-8);
     expect_matrix(from_linear_srgb(ColourSpace::acescg),
                   {{{0.61309740, 0.33952315, 0.04737945},
                     {0.07019372, 0.91635388, 0.01345240},
                     {0.02061559, 0.10956977, 0.86981463}}},
-                  2e-5);
+                  1e-8);
+    // The same from chromaticities, as profiles have them: of whites with four digits and with five.
+    for (const auto& [space, tolerance] : {std::pair{ColourSpace::display_p3, 2e-6}, {ColourSpace::acescg, 2e-5}})
+        for (const Rgb& c : {Rgb{1, 0, 0}, Rgb{0, 1, 0}, Rgb{0, 0, 1}}) {
+            const Rgb own = transform(xyz_d50_of_linear(space), transform(from_linear_srgb(space), c)),
+                      srgb = transform(xyz_d50_of_linear(ColourSpace::srgb), c);
+            for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(own[k], srgb[k], tolerance);
+        }
     expect_matrix(from_linear_srgb(ColourSpace::srgb), {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, 0);
     // The profile of sRGB by the ICC (sRGB_v4): its colourants, in steps of 1/65536.
     expect_matrix(xyz_d50_of_linear(ColourSpace::srgb),
                   {{{0.4360, 0.3851, 0.1431}, {0.2225, 0.7169, 0.0606}, {0.0139, 0.0971, 0.7141}}}, 2e-4);
+}
+
+/// Stored values of a linear colour of sRGB by OpenColorIO, from end to end. Its P3 ends in a power of 2.6, which is
+/// taken back before the curve of sRGB.
+Rgb stored_by_the_library(ColourSpace space, const Rgb& linear) {
+    namespace ocio = OCIO_NAMESPACE;
+    const auto group = ocio::GroupTransform::Create();
+    const auto add = [&](const char* style, ocio::TransformDirection direction) {
+        const auto step = ocio::BuiltinTransform::Create();
+        step->setStyle(style);
+        step->setDirection(direction);
+        group->appendTransform(step);
+    };
+    const auto curve = ocio::ExponentWithLinearTransform::Create();
+    curve->setGamma({2.4, 2.4, 2.4, 1});
+    curve->setOffset({0.055, 0.055, 0.055, 0});
+    curve->setDirection(ocio::TRANSFORM_DIR_INVERSE);
+    if (space == ColourSpace::acescg) {
+        add("UTILITY - ACES-AP1_to_LINEAR-REC709_BFD", ocio::TRANSFORM_DIR_INVERSE);
+    } else if (space == ColourSpace::display_p3) {
+        group->appendTransform(curve);
+        add("DISPLAY - CIE-XYZ-D65_to_sRGB", ocio::TRANSFORM_DIR_INVERSE);
+        add("DISPLAY - CIE-XYZ-D65_to_G2.6-P3-D65", ocio::TRANSFORM_DIR_FORWARD);
+        const auto power = ocio::ExponentTransform::Create();
+        power->setValue({2.6, 2.6, 2.6, 1});
+        group->appendTransform(power);
+    }
+    if (space != ColourSpace::acescg) group->appendTransform(curve);
+    const auto processor = ocio::Config::CreateRaw()->getProcessor(group)->getDefaultCPUProcessor();
+    Rgb stored = linear;
+    processor->applyRGB(stored.data());
+    return stored;
+}
+
+TEST(ColourSpace, StoredValuesAreThoseOfOpenColorIO) {
+    for (const ColourSpace space : kAll)
+        for (const Rgb& c : {Rgb{0, 0, 0}, Rgb{1, 1, 1}, Rgb{0.002f, 0.001f, 0.003f}, Rgb{0.7f, 0.05f, 0.02f},
+                             Rgb{0.1f, 0.3f, 0.6f}}) {
+            const Rgb expected = stored_by_the_library(space, c), own = transform(from_linear_srgb(space), c);
+            // Its line near black has the slope that is tangent to the power, 12.9232; IEC 61966-2-1 has 12.92.
+            for (std::size_t k = 0; k < 3; ++k)
+                EXPECT_NEAR(encode(space, own[k]), expected[k], 1e-5) << data_of(space).name << ' ' << c[0];
+        }
 }
 
 TEST(ColourSpace, WhiteStaysWhiteAndColoursReturn) {

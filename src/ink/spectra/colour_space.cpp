@@ -3,6 +3,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "core/error.h"
+#include "core/files/loaded_module.h"
+#include "ink/spectra/colour_module.h"
 #include "ink/spectra/srgb.h"
 
 namespace tuft::ink {
@@ -43,19 +46,25 @@ Matrix3 rows_of(const Eigen::Matrix3d& m) {
     return rows;
 }
 
-Eigen::Matrix3d from_srgb(ColourSpace space) {
-    if (space == ColourSpace::srgb) return Eigen::Matrix3d::Identity();
-    return primaries_of(space).inverse() * adaptation(data_of(ColourSpace::srgb).white, data_of(space).white) *
-           primaries_of(ColourSpace::srgb);
+ColourConversion load_conversion() {
+    const ModuleSymbol found = find_in_module("libtuft_colour.so", TUFT_COLOUR_BUILT, kColourSymbol);
+    if (found.symbol) return reinterpret_cast<ColourConversion>(found.symbol);
+    throw Error(Message("the colour library cannot be loaded: {} (looked for {})", found.fault, found.tried));
 }
 
-std::array<Matrix3, kSpaces.size()> tables(bool inverse) {
-    std::array<Matrix3, kSpaces.size()> table{};
-    for (std::size_t i = 0; i < table.size(); ++i) {
-        const Eigen::Matrix3d m = from_srgb(static_cast<ColourSpace>(i));
-        table[i] = rows_of(inverse ? Eigen::Matrix3d(m.inverse()) : m);
-    }
-    return table;
+ColourMatrices matrices_of(ColourSpace space) {
+    ColourMatrices matrices;
+    const char* fault = load_conversion()(space, matrices);
+    if (fault) throw Error(Message("OpenColorIO: {}", fault));
+    return matrices;
+}
+
+const ColourMatrices& known_matrices(ColourSpace space) {
+    static constexpr Matrix3 kIdentity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    static constexpr ColourMatrices kSame{kIdentity, kIdentity};
+    if (space == ColourSpace::srgb) return kSame;  // what most commands write needs no library
+    static const ColourMatrices p3 = matrices_of(ColourSpace::display_p3), acescg = matrices_of(ColourSpace::acescg);
+    return space == ColourSpace::display_p3 ? p3 : acescg;
 }
 
 }  // namespace
@@ -90,13 +99,11 @@ Matrix3 adaptation_to_d50(ColourSpace space) {
 }
 
 const Matrix3& from_linear_srgb(ColourSpace space) {
-    static const auto table = tables(false);
-    return table[static_cast<std::size_t>(space)];
+    return known_matrices(space).from_srgb;
 }
 
 const Matrix3& to_linear_srgb(ColourSpace space) {
-    static const auto table = tables(true);
-    return table[static_cast<std::size_t>(space)];
+    return known_matrices(space).to_srgb;
 }
 
 float encode(ColourSpace space, float linear) {

@@ -12,8 +12,9 @@
 /// primaries by one matrix then, so nothing is cut before the space of the file. Called by composite.h and by the
 /// writers of `io`.
 ///
-/// With N the matrix of a space's linear RGB to XYZ, by its chromaticities and white, and A the Bradford adaptation of
-/// whites (ICC.1:2010, annex E; [Lam1985]), RGB' = N'⁻¹ A N RGB.
+/// The matrix between linear sRGB and a space is OpenColorIO's: RGB' = N'⁻¹ A N RGB, where N is the matrix of
+/// a space's linear RGB to XYZ, by its chromaticities and white, and A the Bradford adaptation of whites (ICC.1:2010,
+/// annex E; [Lam1985]). N and A of this header are what ICC profiles hold.
 namespace tuft::ink {
 
 /// A space that pictures are stored in.
@@ -51,7 +52,8 @@ Matrix3 xyz_of_linear(ColourSpace space);
 Matrix3 xyz_d50_of_linear(ColourSpace space);
 /// Bradford adaptation of XYZ from the white of the space to D50.
 Matrix3 adaptation_to_d50(ColourSpace space);
-/// Linear sRGB to linear RGB of the space, and back. White stays white; for sRGB the identity, exactly.
+/// Linear sRGB to linear RGB of the space, and back. White stays white; for sRGB the identity, exactly. The first call
+/// for another space loads OpenColorIO. \throw Error where it cannot be loaded.
 const Matrix3& from_linear_srgb(ColourSpace space);
 const Matrix3& to_linear_srgb(ColourSpace space);
 

@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "core/error.h"
-#include "io/image/loaded_module.h"
+#include "core/files/loaded_module.h"
 
 namespace tuft::io {
 namespace {

@@ -7,9 +7,9 @@
 #include "core/error.h"
 #include "core/files/files.h"
 #include "core/files/library_fault.h"
+#include "core/files/loaded_module.h"
 #include "io/image/exr_header.h"
 #include "io/image/image_codec.h"
-#include "io/image/loaded_module.h"
 #include "io/image/png.h"
 #include "stroke/surface/model.h"
 

@@ -1,4 +1,4 @@
-#include "io/image/loaded_module.h"
+#include "core/files/loaded_module.h"
 
 #include <dlfcn.h>
 
@@ -8,7 +8,7 @@
 
 namespace fs = std::filesystem;
 
-namespace tuft::io {
+namespace tuft {
 
 ModuleSymbol find_in_module(const std::string& name, const fs::path& built, const char* symbol) {
     std::vector<fs::path> places;
@@ -38,4 +38,4 @@ ModuleSymbol find_in_module(const std::string& name, const fs::path& built, cons
     return found;
 }
 
-}  // namespace tuft::io
+}  // namespace tuft

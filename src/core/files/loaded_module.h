@@ -4,9 +4,9 @@
 #include <string>
 
 /// \file
-/// Modules of this program, each with a library that is loaded on first use: `tuft_images` (OpenImageIO) and
-/// `tuft_draco`. Inside `io` only. Any thread.
-namespace tuft::io {
+/// Modules of this program, each with a library that is loaded on first use: `tuft_images` (OpenImageIO), `tuft_draco`
+/// and `tuft_colour` (OpenColorIO). Called by `io` and `ink`. Any thread.
+namespace tuft {
 
 /// What was found of a module, or why not.
 struct ModuleSymbol {
@@ -19,4 +19,4 @@ struct ModuleSymbol {
 /// symbols of this program. A module stays loaded.
 ModuleSymbol find_in_module(const std::string& name, const std::filesystem::path& built, const char* symbol);
 
-}  // namespace tuft::io
+}  // namespace tuft
