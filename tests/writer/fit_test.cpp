@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/files/files.h"
 #include "core/system/parallel.h"
+#include "core/text/units.h"
 #include "stroke/drawing/plane_ink.h"
 #include "writer/fit/writer.h"
 #include "writer/gesture/heads.h"
@@ -332,6 +333,28 @@ TEST(Style, ShippedOnesLoadAndUnknownKeysAreNamed) {
     EXPECT_ANY_THROW(load_style("kaisu"));
     EXPECT_ANY_THROW(parse_style("speed_mm = 3", "s.toml"));
     EXPECT_ANY_THROW(parse_style("tries = 1000", "s.toml"));
+}
+
+// A style that states no lean holds the brush upright. 人: 撇, then 捺.
+TEST(Style, TheHolderLeansBackInTheSegmentsThatTheStyleNames) {
+    const auto written = [](const std::string& lean) {
+        const Style style = parse_style("tries = 1\n" + lean, "s.toml");
+        return Writer({.style = style, .brush = {}, .side = 0.1}).write({bundled(U'人')}).front();
+    };
+    const auto upright = written(""), leaning = written("[lean_deg]\nP = 12\n");
+    ASSERT_EQ(leaning.size(), 2u);
+    for (const WrittenStroke& s : upright)
+        for (const stroke::StrokeSample& sample : s.trace.samples) EXPECT_EQ(sample.tilt, Vec2(0));
+    const std::vector<stroke::StrokeSample>& falling = leaning[0].trace.samples;
+    const std::size_t middle = falling.size() / 2;
+    const Vec2 on(falling[middle + 1].position - falling[middle - 1].position), tilt = falling[middle].tilt;
+    EXPECT_NEAR(glm::length(tilt), 12 * kDegree, 0.01 * kDegree);  // blended over a curve of a degree or two
+    EXPECT_LT(glm::dot(tilt, glm::normalize(on)), -0.99 * glm::length(tilt));
+    const std::vector<stroke::StrokeSample>& pressed = leaning[1].trace.samples;
+    EXPECT_EQ(pressed[pressed.size() / 2].tilt, Vec2(0));
+    EXPECT_ANY_THROW(parse_style("lean_deg = 3", "s.toml"));
+    EXPECT_ANY_THROW(parse_style("[lean_deg]\nQ = 3", "s.toml"));
+    EXPECT_ANY_THROW(parse_style("[lean_deg]\nP = 60", "s.toml"));
 }
 
 // A nib's width is that of its ferrule, whatever the pressure: it is pressed evenly and lightly.

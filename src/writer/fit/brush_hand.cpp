@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "writer/gesture/stroke_line.h"
+
 namespace tuft::writer {
 namespace {
 
@@ -47,6 +49,32 @@ std::vector<stroke::StrokeSample> touch_of(std::span<const Station> s, const Bru
     return touch;
 }
 
+/// Tilt of the holder at each station, radians to the right and down.
+std::vector<Vec2> tilts_of(std::span<const Station> stations, std::span<const double> along, const Pace& pace) {
+    std::vector<Vec2> own, tilts(stations.size(), Vec2(0));
+    if (pace.lean.empty() || stations.size() < 2 || !(along.back() > 1e-9)) return tilts;
+    std::vector<Vec2> centres;
+    for (const Station& s : stations) centres.push_back(s.centre);
+    const StrokeLine line = make_stroke_line(centres);
+    for (const double at : along) {
+        const double there = at / along.back() * line.length();
+        std::size_t s = 0;
+        while (s + 1 < line.segments.size() && there > line.along[line.segments[s].last]) ++s;
+        const auto lean = pace.lean.find(line.segments[s].code);
+        const Vec2 d = line.direction(there);
+        own.push_back(lean == pace.lean.end() ? Vec2(0) : lean->second * Vec2(-d.x, d.y));
+    }
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        double all = 0;
+        for (std::size_t k = 0; k < own.size(); ++k) {
+            const double weight = std::max(0.0, 1 - std::abs(along[k] - along[i]) / std::max(pace.ease, 1.0));
+            tilts[i] += weight * own[k], all += weight;
+        }
+        tilts[i] /= all;
+    }
+    return tilts;
+}
+
 }  // namespace
 
 stroke::StrokeSamples samples_of(std::span<const Station> stations, const BrushHand& hand, const Pace& pace) {
@@ -56,6 +84,7 @@ stroke::StrokeSamples samples_of(std::span<const Station> stations, const BrushH
         along.push_back(along.back() + glm::distance(stations[i].centre, stations[i - 1].centre));
     const std::size_t near_end = stations.size() - std::min<std::size_t>(stations.size(), 4);
     const bool blunt = stations[near_end].half > kBlunt;
+    const std::vector<Vec2> tilts = tilts_of(stations, along, pace);
     double time = 0;
     for (std::size_t i = 0; i < stations.size(); ++i) {
         const double bend = std::max(curvature(stations, i) * pace.radius, 1.0);
@@ -66,12 +95,14 @@ stroke::StrokeSamples samples_of(std::span<const Station> stations, const BrushH
         if (i > 0) time += (along[i] - along[i - 1]) * hand.unit / speed;
         trace.samples.push_back({.time = time,
                                  .position = {stations[i].centre.x * hand.unit, -stations[i].centre.y * hand.unit, 0},
-                                 .pressure = pressure_of(stations[i].half, hand)});
+                                 .pressure = pressure_of(stations[i].half, hand),
+                                 .tilt = tilts[i]});
     }
     if (const std::vector<stroke::StrokeSample> touch = touch_of(stations, hand, pace); !touch.empty()) {
         trace.samples.insert(trace.samples.begin(), touch.begin(), touch.end());
         const double begin = touch.front().time;
         for (stroke::StrokeSample& sample : trace.samples) sample.time -= begin;
+        for (std::size_t i = 0; i < touch.size(); ++i) trace.samples[i].tilt = tilts.front();
     }
     stroke::StrokeSample last = trace.samples.back();
     last.time += kLiftTime;

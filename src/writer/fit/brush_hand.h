@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,13 +34,16 @@ struct Pace {
     /// Units to either side of the path over which a head is set down, from the left to the right; 0: along the path.
     double across = 1;
     double touch = 0.1;  ///< pressure of that, at most that of the head's width
+    /// Radians by which the holder leans back along the path, by the code of a segment; others: upright.
+    std::map<char, double> lean;
 };
 
 /// Returns the flat samples of a hand along stations, metres, y down: pressures that draw the widths
-/// (`LineWidths::pressure`, below the least width in proportion to 0), the holder upright, and a last sample where the
-/// tip leaves. Before the station of the head the brush is set down across the path: its hair lies across, and rounds
-/// the head. A tuft that is set down along the path leaves a point as thin as its tip. Frame: the character's square,
-/// origin at its lower left corner, so y is negative within it.
+/// (`LineWidths::pressure`, below the least width in proportion to 0), the holder leaning as `pace.lean` says, and a
+/// last sample where the tip leaves. Before the station of the head the brush is set down across the path: its hair
+/// lies across, and rounds the head. A tuft that is set down along the path leaves a point as thin as its tip. At
+/// corners the lean goes over from one segment to the next within `pace.ease`. Frame: the character's square, origin at
+/// its lower left corner, so y is negative within it.
 stroke::StrokeSamples samples_of(std::span<const Station> stations, const BrushHand& hand, const Pace& pace = {});
 
 }  // namespace tuft::writer

@@ -94,7 +94,11 @@ BrushHand Writer::hand() {
 
 Pace Writer::pace() const {
     const Style& s = options_.style;
-    return {.speed = s.speed * options_.side / s.brush_side, .radius = s.bend_radius, .ends = s.ends, .ease = s.ease};
+    return {.speed = s.speed * options_.side / s.brush_side,
+            .radius = s.bend_radius,
+            .ends = s.ends,
+            .ease = s.ease,
+            .lean = s.lean};
 }
 
 Writer::Job Writer::job_of(const Glyph& glyph, std::size_t stroke) const {
@@ -141,7 +145,12 @@ std::uint64_t Writer::seed_of(const BrushHand& with, const Pace& at) const {
     const std::string preset = brush::preset_toml(with.preset);
     const double facts[] = {with.unit, at.speed,  at.radius, at.ends,
                             at.ease,   at.across, at.touch,  static_cast<double>(options_.style.tries)};
-    return hash_bytes(facts, sizeof facts, hash_bytes(preset.data(), preset.size()));
+    std::uint64_t seed = hash_bytes(facts, sizeof facts, hash_bytes(preset.data(), preset.size()));
+    for (const auto& [code, lean] : at.lean) {
+        const double own[] = {static_cast<double>(code), lean};
+        seed = hash_bytes(own, sizeof own, seed);
+    }
+    return seed;
 }
 
 Writer::Fitted Writer::fit_stroke(const Glyph& glyph, std::size_t stroke, const BrushHand& with, const Pace& at,

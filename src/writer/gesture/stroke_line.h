@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/geometry/types.h"
@@ -49,6 +50,7 @@ std::vector<Vec2> curve_through(std::span<const Vec2> line);
 /// Returns the code of a direction in radians, y up, by degrees: H (橫) −24…20, T (提) 20…80, U 80…150, L 150…192,
 /// P (撇) −168…−102, S (豎) −102…−72, N (捺, 點) −72…−24.
 char segment_code(double direction);
+inline constexpr std::string_view kSegmentCodes = "HTULPSN";
 
 /// Returns the middle of the range of a code, radians.
 double code_direction(char code);

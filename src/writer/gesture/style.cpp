@@ -1,12 +1,14 @@
 #include "writer/gesture/style.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "core/error.h"
 #include "core/files/files.h"
 #include "core/files/toml_text.h"
 #include "core/text/units.h"
+#include "writer/gesture/stroke_line.h"
 
 namespace fs = std::filesystem;
 
@@ -41,6 +43,25 @@ fs::path style_folder() {
     return data_folder() / "models" / "writer";
 }
 
+/// Reads the table of leans, degrees, by codes of segments.
+void read_leans(Style& style, const toml::node& node, const std::string& source) {
+    constexpr double kMost = 45;
+    const toml::table* table = node.as_table();
+    if (!table) throw Error(source, static_cast<long>(node.source().begin.line), Message("'lean_deg' must be a table"));
+    for (const auto& [key, value] : *table) {
+        const auto degrees = value.value<double>();
+        const long line = static_cast<long>(value.source().begin.line);
+        if (key.str().size() != 1 || kSegmentCodes.find(key.str()) == std::string_view::npos)
+            throw Error(source, line,
+                        Message("'lean_deg' has no segment '{}': H, T, U, L, P, S or N", std::string(key.str())));
+        if (!value.is_number() || !degrees || !(std::abs(*degrees) <= kMost))
+            throw Error(
+                source, line,
+                Message("'{}' has a value that is no number from {} to {}", std::string(key.str()), -kMost, kMost));
+        style.lean[key.str().front()] = *degrees * kDegree;
+    }
+}
+
 void read_key(Style& style, const std::string& key, const toml::node& node, const std::string& source) {
     const auto fail = [&](const Message& what) {
         throw Error(source, static_cast<long>(node.source().begin.line), what);
@@ -56,6 +77,8 @@ void read_key(Style& style, const std::string& key, const toml::node& node, cons
         const auto found = kinds.find(node.value_or<std::string>(""));
         if (found == kinds.end()) fail(Message("'kind' must be brush, line or nib"));
         style.kind = found->second;
+    } else if (key == "lean_deg") {
+        read_leans(style, node, source);
     } else if (key == "tries") {
         const auto n = node.value<std::int64_t>();
         if (!n || *n < 1 || *n > 100) fail(Message("'tries' must be a whole number from 1 to 100"));
@@ -67,7 +90,7 @@ void read_key(Style& style, const std::string& key, const toml::node& node, cons
             fail(Message("'{}' has a value that is no number from {} to {}", key, r.lo, r.hi));
         style.*r.field = *value * r.unit;
     } else {
-        std::vector<std::string> known{"brush", "kind", "tries", "name", "note"};
+        std::vector<std::string> known{"brush", "kind", "tries", "lean_deg", "name", "note"};
         for (const auto& [name, range] : kNumbers) known.push_back(name);
         fail(Message("unknown key '{}'{}", key, did_you_mean(nearest_name(key, known))));
     }
