@@ -190,5 +190,31 @@ TEST(CopiedPicture, CutsAreReadAsTheyAreWrittenAndWrongOnesQuoted) {
     EXPECT_THROW(take_apart(photo_of(kTen), "photo", {.threshold = 0, .cuts = {{99, 0.5}}, .order = {}}), Error);
 }
 
+// 十 as a font has it: one outline without an order. What its strokes cover is the outline, but for corners that are
+// rounded by half a cell.
+TEST(Copy, TheAreaOfAFontIsTakenApartIntoStrokes) {
+    const Ring cross{{100, 460}, {460, 460}, {460, 100}, {540, 100}, {540, 460}, {900, 460},
+                     {900, 540}, {540, 540}, {540, 900}, {460, 900}, {460, 540}, {100, 540}};
+    const Glyph font{.code = U'十', .area = {cross}, .advance = 900, .sideways = true};
+    const Glyph written = strokes_of_area(font);
+    ASSERT_EQ(written.strokes.size(), 2u);
+    EXPECT_TRUE(written.area.empty());
+    EXPECT_EQ(written.advance, 900);
+    EXPECT_TRUE(written.sideways);
+    EXPECT_GT(written.strokes[0].median.back().x - written.strokes[0].median.front().x, 700) << "橫 first";
+    EXPECT_LT(written.strokes[1].median.back().y - written.strokes[1].median.front().y, -700) << "from the top";
+    Cells wanted = cells_over(font.area, 4, 20), covered = wanted;
+    fill(wanted, font.area);
+    for (const GlyphStroke& s : written.strokes) fill(covered, s.outline);
+    double both = 0, either = 0;
+    for (std::size_t i = 0; i < wanted.inside.size(); ++i)
+        both += wanted.inside[i] && covered.inside[i], either += wanted.inside[i] || covered.inside[i];
+    EXPECT_GT(both / either, 0.98);
+    Glyph wide = font;
+    for (Vec2& p : wide.area[0]) p.x *= 6;
+    EXPECT_EQ(strokes_of_area(wide).area, wide.area) << "an ornament wider than four characters stays filled";
+    EXPECT_TRUE(strokes_of_area({.code = U' '}).strokes.empty());
+}
+
 }  // namespace
 }  // namespace tuft::writer

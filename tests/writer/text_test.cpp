@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "io/font/installed_fonts.h"
 
 namespace tuft::writer {
 namespace {
@@ -19,6 +20,24 @@ Text text_of(const std::string& text, double side = 0.02) {
 TEST(Text, ItsGroupIsNamedByItWithoutBreaksAndSlashes) {
     EXPECT_EQ(group_of("a/b\nc"), "a b c");
     EXPECT_EQ(text_of("\xe6\xb0\xb8\n\xe6\x98\xa5").group, "\xe6\xb0\xb8 \xe6\x98\xa5");
+}
+
+// Fitted to its outlines, a character of a font is strokes of a brush, equal ones the same; a pen's styles fill it.
+TEST(Text, CharactersOfAFontAreStrokesWhereTheyAreFitted) {
+    const io::InstalledFont font = io::find_font({.families = {"sans-serif"}});
+    if (font.file.empty()) GTEST_SKIP() << "no font is installed";
+    TextReader reader;
+    const Glyph filled = reader.read({.text = "T", .glyphs = font.family}).lines[0][0];
+    EXPECT_TRUE(filled.strokes.empty());
+    const Text fitted = reader.read({.text = "TT", .glyphs = font.family, .fit = true});
+    for (const Glyph& glyph : fitted.lines[0]) {
+        EXPECT_TRUE(glyph.area.empty());
+        ASSERT_EQ(glyph.strokes.size(), 2u);
+        for (const GlyphStroke& stroke : glyph.strokes) EXPECT_FALSE(stroke.outline.empty());
+    }
+    EXPECT_EQ(fitted.lines[0][0].strokes[0].median, fitted.lines[0][1].strokes[0].median);
+    EXPECT_FALSE(
+        reader.read({.text = "T", .glyphs = font.family, .style = "line", .fit = true}).lines[0][0].area.empty());
 }
 
 TEST(Text, EmptyLinesAtItsEndAreNone) {

@@ -215,7 +215,7 @@ std::string place_words(const Lettering& l, const LetteringPlace& place, const s
     if (l.spacing.characters > 0) words += fmt::format(" --spacing {:.3f}", l.spacing.characters);
     if (l.spacing.lines > 0) words += fmt::format(" --line-spacing {:.3f}", l.spacing.lines);
     if (!l.style_brush) words += " --brush " + quoted(brush);
-    if (l.fit) words += " --fit";
+    if (wanted.fit) words += " --fit";
     if (const auto* placement = std::get_if<stroke::Placement>(&place)) return words + " " + place_words(*placement);
     if (l.direction != writer::Direction::rim) return words;
     const Vec3 at = std::get<LetteringPath>(place).at / kMillimetre;

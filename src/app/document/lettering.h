@@ -30,7 +30,6 @@ struct Lettering {
     TextSpacing spacing;
     double turn = 0;                ///< radians, clockwise in the view; of lines and columns
     bool style_brush = true;        ///< the style's brush in the size that suits; false: the chosen brush
-    bool fit = false;               ///< to the outlines of the source
     CopyInWork copy;                ///< of the picture `wanted.like`
     bool reread = false;            ///< the picture is to be read, also where nothing else is wanted
     std::vector<KeptCopy> kept;     ///< of the project
@@ -41,7 +40,7 @@ struct Lettering {
     std::uint64_t revision = 0;        ///< changes with `text`
 
     bool empty() const { return !text; }
-    bool fitted() const { return fit || !wanted.like.empty(); }  ///< to outlines; copies always are
+    bool fitted() const { return wanted.fit || !wanted.like.empty(); }  ///< to outlines; copies always are
 };
 
 /// Copies a character from a picture from now on, as its file is now; an empty path: writes the text again.

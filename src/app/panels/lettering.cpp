@@ -168,7 +168,7 @@ void lettering_panel(Session& s) {
     if (l.wanted.like.empty()) source_row(ui, l, s.dialogs.file);
     copy_row(s, l);
     if (!l.wanted.glyphs.empty() && l.wanted.like.empty())
-        ui.toggle("To their outlines", l.fit,
+        ui.toggle("To their outlines", l.wanted.fit,
                   "Strokes are fitted until their ink covers the outlines that the source states");
     ui.toggle("Snap", s.tools.place.snaps,
               "To the plane of symmetry and level with other drawings; Ctrl places it freely");

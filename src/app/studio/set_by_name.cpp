@@ -140,7 +140,7 @@ constexpr Setting kToolSettings[] = {
          next.order = v.text;
          correct(copy_to_edit(s.tools.lettering), std::move(next));
      }},
-    {"text-fit", [](Session& s, const SettingValue& v) { s.tools.lettering.fit = v.on; }},
+    {"text-fit", [](Session& s, const SettingValue& v) { s.tools.lettering.wanted.fit = v.on; }},
     {"mask-kind", [](Session& s, const SettingValue& v) { s.masks.choice.kind = stroke::mask_kind_of(v.text); }},
     {"mask-within", [](Session& s, const SettingValue& v) { s.masks.choice.within = v.within(0, 180) * kDegree; }},
     {"layer",

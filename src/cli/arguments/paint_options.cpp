@@ -305,7 +305,10 @@ void add_write_options(CLI::App* w, Write& write) {
                   "how they are written: kaishu (regular script), xingshu (running script), line (an even pen), italic "
                   "(a broad edge), or a .toml file")
         ->type_name("STYLE");
-    w->add_flag("--fit", write.fit, "follow the outlines of the source, where it states them");
+    w->add_flag("--fit", write.fit,
+                "follow the outlines of the source, where it states them; characters of a font, else filled, become "
+                "strokes of the "
+                "brush");
     w->add_option("--direction", write.direction,
                   "horizontal, vertical (columns from right to left), rim (level round the model, in the middle "
                   "--place) or curve (along --curve)")

@@ -51,7 +51,8 @@ TextToWrite read_text(const Write& a) {
                      .glyphs = a.glyphs,
                      .style = a.style,
                      .like = a.like,
-                     .correction = {.threshold = a.threshold, .cuts = writer::parse_cuts(a.cuts), .order = a.order}}),
+                     .correction = {.threshold = a.threshold, .cuts = writer::parse_cuts(a.cuts), .order = a.order},
+                     .fit = a.fit}),
         ""};
     if (reader.copied()) out.note = report_copy(*reader.copied(), a);
     writer::Text& text = out.text;

@@ -22,6 +22,8 @@ constexpr double kLongestHead = 90;    // units
 constexpr double kCornerHead = 1.25;   // of the half width: a corner lies so far from the middle of a head
 constexpr double kInset = 12;          // units between the begin of a centre line and the edge
 
+constexpr double kAreaCell = 2, kAreaMargin = 8;  // units, of the cells of a font's area
+
 /// The centre line of a stroke with half widths. `through`: where it runs through a junction.
 struct CopiedLine {
     std::vector<Station> points;
@@ -177,6 +179,20 @@ Glyph copied_glyph(const Cells& ink, const Skeleton& skeleton, const StrokeOrder
         glyph.strokes.push_back(std::move(stroke));
     }
     return glyph;
+}
+
+Glyph strokes_of_area(const Glyph& glyph) {
+    Cells ink = cells_over(glyph.area, kAreaCell, kAreaMargin);
+    if (std::max(ink.width, ink.height) * kAreaCell > kWidestCopied) return glyph;
+    fill(ink, glyph.area);
+    if (ink.count() == 0) return glyph;
+    const Skeleton skeleton = skeleton_of(ink);
+    const StrokeOrder order = order_by_rules(skeleton);
+    if (order.empty() || order.size() > kMostStrokes) return glyph;
+    Glyph out = glyph;
+    out.strokes = copied_glyph(ink, skeleton, order, glyph.code).strokes;
+    out.area.clear();
+    return out;
 }
 
 std::string numbered_svg(const Cells& ink, const Skeleton& skeleton, const StrokeOrder& order) {

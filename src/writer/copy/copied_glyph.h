@@ -19,6 +19,12 @@ namespace tuft::writer {
 /// pieces. Cost: cells × points of the lines.
 Glyph copied_glyph(const Cells& ink, const Skeleton& skeleton, const StrokeOrder& order, char32_t code);
 
+/// Returns a character of a font as strokes, as a brush would write it: its area is thinned, and each stroke, in the
+/// order by rules, has its part of the area as its outline. Unchanged: a character without an area, one more than
+/// `kWidestCopied` wide or high, and one in which no centre line is found. Cost: that of `copied_glyph`.
+Glyph strokes_of_area(const Glyph& glyph);
+inline constexpr double kWidestCopied = 4 * kSide;  ///< units
+
 /// Colours of strokes that lie beside each other, in turn, sRGB as 0xrrggbb; told apart without red and green (Okabe
 /// and Ito 2008).
 inline constexpr std::array<std::uint32_t, 6> kStrokeColours{0x0072b2, 0xd55e00, 0x009e73,

@@ -105,6 +105,24 @@ const std::vector<Glyph>& only_line(const Text& text) {
     return text.lines.front();
 }
 
+/// Makes strokes of the areas of fonts, of equal ones once.
+void make_strokes(std::vector<std::vector<Glyph>>& lines) {
+    std::vector<std::pair<std::vector<Ring>, std::vector<GlyphStroke>>> made;
+    for (std::vector<Glyph>& line : lines)
+        for (Glyph& glyph : line) {
+            if (glyph.area.empty()) continue;
+            const auto known = std::find_if(made.begin(), made.end(), [&](auto& m) { return m.first == glyph.area; });
+            if (known != made.end()) {
+                glyph.strokes = known->second;
+                glyph.area.clear();
+                continue;
+            }
+            Glyph written = strokes_of_area(glyph);
+            if (written.area.empty()) made.emplace_back(glyph.area, written.strokes);
+            glyph = std::move(written);
+        }
+}
+
 }  // namespace
 
 bool Text::blank() const {
@@ -150,6 +168,7 @@ Text TextReader::read(const TextRequest& request) {
     std::vector<std::u32string> lines = lines_of(request.text);
     while (lines.size() > 1 && lines.back().empty()) lines.pop_back();
     text.lines = glyphs_of(lines, order);
+    if (request.fit && text.style.kind == HandKind::brush) make_strokes(text.lines);
     for (std::vector<Glyph>& line : text.lines) space_scripts(line);
     return text;
 }

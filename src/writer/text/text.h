@@ -27,6 +27,7 @@ struct TextRequest {
     std::string style = "kaishu";  ///< name or .toml
     std::filesystem::path like;    ///< picture of one character that is copied, whose name is `text`; or empty
     CopyCorrection correction;     ///< of the copy
+    bool fit = false;              ///< to the outlines of the source; filled areas of fonts become strokes of a brush
 
     bool operator==(const TextRequest&) const = default;
 };
