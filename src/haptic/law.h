@@ -47,7 +47,8 @@
 ///    that ends with its energy fall by k â a period at most: it takes the motion Δx̂ that goes on as the arm has sped
 ///    up, without its counts (â as a, with Δx̂), and e″ = e′ − ½ f₋₁ · Δx̂. f₋₁ is the force of the period before. Where
 ///    â <= 0 the tank only fills: P = √(2 k e″) − k â. Where a <= 0, e′ / a sets no limit. Δx̂ is of the last period in
-///    k_max |Δx̂|, of the next one in â and e″.
+///    k_max |Δx̂|, of the next one in â and e″. With restore e″ is less by 1.8 counts of f₋₁, of which x′ does not know
+///    yet: the force has to fall while the tank can still pay for it.
 ///    A landing lends w = ½ K b², b = ½ count + a of a hand at rest: so much a spring of K lacks, pressed slowly from
 ///    nothing, to keep what the limit of |f| asks for. w ends linearly between 2 b and 4 b of the contact's path.
 ///

@@ -146,6 +146,23 @@ TEST(Trial, RestoreIsPaidForByTheArm) {
         }
 }
 
+// With restore the tank runs out while the force is still great. It comes to know of a motion by two counts at once,
+// 0.12 mm on Falcon, and once cut the force by 0.49 N on the sheet and by 0.67 N where the ferrule slides at the rim.
+TEST(Trial, ARestoredForceThatEndsFallsWithoutSteps) {
+    const DeviceLimits& falcon = device_preset("falcon");
+    for (const auto& [place, motion] : {std::pair("sheet", HandMotion::hit), std::pair("rim", HandMotion::slide)}) {
+        const TrialModel f = load_trial_model(place);
+        const brush::Tuft tuft = tuft_of("wolf-medium");
+        TrialOptions options = options_for(falcon, 1e-3);
+        options.law.restore = true;
+        options.seconds = 4;
+        const TrialReport r = run_trial(tuft, *f.surface, hand_path(motion, f.place, tuft.preset), options);
+        EXPECT_GT(r.limited, 100u) << place;
+        EXPECT_LE(r.largest_step, allowed_step(falcon)) << place;
+        EXPECT_GE(r.least_with_arm, -30 * kMicrojoule) << place;
+    }
+}
+
 TEST(Trial, RandomHandsGetNothingBack) {
     const TrialModel f = load_trial_model("sheet");
     const brush::Tuft tuft = tuft_of("wolf-medium");
