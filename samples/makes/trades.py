@@ -150,4 +150,5 @@ def main():
         write(folder / f"{name}.inkml", title, groups)
 
 
-main()
+if __name__ == "__main__":
+    main()

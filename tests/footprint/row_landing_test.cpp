@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brush/preset/preset.h"
 #include "brush/state/tuft_state.h"
+#include "brush/tuft/tuft.h"
 #include "footprint/outline/cuts.h"
 #include "footprint/outline/outline.h"
 
@@ -85,6 +87,32 @@ TEST(RowLanding, OnItsEdgeTouchesWithItsLowestHairOnly) {
     ASSERT_EQ(trails.size(), 1u);
     EXPECT_EQ(trails[0].branch, 0);
     EXPECT_NEAR(glm::length(trails[0].cuts.back().thick()), kHalfThick + 1e-4, 1e-9) << "as thick as it is, and ink";
+}
+
+/// A filbert lands from its middle outwards: hair touches where it is long enough.
+TEST(RowLanding, AFilbertLandsFromItsMiddle) {
+    constexpr double kLean = 0.4;
+    const brush::Preset p = brush::load_preset("filbert-12");
+    for (const double press : {0.06, 0.1}) {
+        brush::Tuft tuft = brush::make_tuft(p, 5);
+        brush::TuftState state;
+        const brush::ContactPlane plane;
+        for (int i = 0; i <= 30; ++i) {
+            const brush::Pose pose{.position = {0, 0, p.length * (std::cos(kLean) - press * i / 30)},
+                                   .rotation = glm::angleAxis(kLean, Vec3{1, 0, 0})};
+            state = brush::step(tuft, pose, std::span(&plane, 1), 1e-3);
+        }
+        // L − h (1 − √(1 − s²)) reaches the surface, straight.
+        const double shorter = press / std::cos(kLean) * p.length / p.toe,
+                     s = std::sqrt(1 - (1 - shorter) * (1 - shorter));
+        double lo = 1e9, hi = -1e9;
+        for (const Outline& o : outlines_of(state, {}, {}, {.film = 0, .points = 60}))
+            for (const Vec2& q : curve_points(o, 8)) lo = std::min(lo, q.x), hi = std::max(hi, q.x);
+        const double width = hi - lo;
+        // Straight hair reaches furthest; a spine stands for a strip of 2.4 mm.
+        EXPECT_LT(width, s * p.width + 2 * p.tip_radius) << press;
+        EXPECT_GT(width, s * p.width - 0.75 * p.width / p.spines) << press;
+    }
 }
 
 }  // namespace

@@ -115,6 +115,11 @@ std::vector<FerruleSpine> ferrule_spines(const Preset& p) {
         if (k == p.spines - 1 - k) l.x = l.lean = 0;
     }
     for (FerruleSpine& spine : out) spine.length = length_at(p, spine.x / a, out.back().x / a);
+    if (p.toe > 0)
+        for (FerruleSpine* outermost : {&out.front(), &out.back()}) {
+            const double s = outermost->x / a;
+            outermost->edge_short = p.toe * std::sqrt(std::max(0.0, 1 - s * s));
+        }
     return out;
 }
 

@@ -36,6 +36,7 @@ struct FerruleSpine {
     double pitch = 0;          ///< m, width of the strip at the mouth; of a disc √π times its radius
     double thick = 0;          ///< m, mean thickness of the strip at the mouth; likewise
     double from = -1, to = 1;  ///< ends of the strip over the half-width a
+    double edge_short = 0;     ///< m, by how much the hair of a toe ends earlier at an outermost strip's free edge
 };
 
 /// Returns true for a tuft that looks different when it is turned about its axis: a wide ferrule, or a form of its own.

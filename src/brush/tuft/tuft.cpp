@@ -221,6 +221,7 @@ TuftState bend_wide(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> 
         lost -= solved.spines[k].result.dissipation;
         solved.spines[k].branch.ink_share = spine.share;
         solved.spines[k].branch.strip = spine.strip;
+        solved.spines[k].branch.edge_short = spine.edge_short;
         add_spine(p, spine, std::move(solved.spines[k]), pose.rotation * spine.root, state);
     }
     // What hair lost on the way to the last part of this step, and between the spines.

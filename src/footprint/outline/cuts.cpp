@@ -98,6 +98,16 @@ class BranchSurface {
         return from_tip_[i] + (s - double(i)) * (from_tip_[i + 1] - from_tip_[i]);
     }
 
+    /// Place that lies `metres` of hair from the tip; inverse of `from_tip`.
+    double place(double metres) const {
+        const auto next =
+            std::upper_bound(from_tip_.begin() + static_cast<std::ptrdiff_t>(cap_), from_tip_.end(), metres);
+        if (next == from_tip_.end()) return end();
+        const auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - from_tip_.begin(), cap_ + 1)) - 1;
+        const double run = from_tip_[i + 1] - from_tip_[i];
+        return double(i) + (run > 0 ? std::clamp((metres - from_tip_[i]) / run, 0.0, 1.0) : 0);
+    }
+
     double end() const { return nodes_.empty() ? 0 : double(nodes_.size() - 1); }
 
     Cut at(double s) const {
@@ -239,8 +249,10 @@ Recycled<Stretch> touching_stretches(const BranchSurface& surface) {
 }
 
 constexpr double kLanded = 0.5;  // of a spine's overlap, that its neighbour touches with when it has wholly landed
-constexpr double kOfOneLength = 0.01;  // of its length, by which a neighbour's hair differs at most
-constexpr double kFarthest = 3;        // times its half width, that a strip touches to one side
+// Of its length, by which a neighbour's hair differs at most, and from which on they do not lie side by side.
+constexpr double kSideBySide = 0.12, kApart = 0.2;
+constexpr double kOneLength = 1e-9;  // metres, by which equal lengths differ
+constexpr double kFarthest = 3;      // times its half width, that a strip touches to one side
 // Part of a strip's broad axis on the surface, and cosine between it and the line to the neighbour, up to which the
 // strip stands on its edge, and from which on it lies beside the neighbour.
 constexpr double kStandsAside = 0.6, kLiesBeside = 0.8;
@@ -298,16 +310,20 @@ class RowLanding {
     template <class OtherCut>
     void bound(std::size_t k, int neighbour, double farthest, double landed_part, OtherCut other_of) {
         const BranchSurface& surface = surfaces_[static_cast<std::size_t>(neighbour)];
-        const double length = surface.from_tip(surface.end()),
-                     own_length = surfaces_[static_cast<std::size_t>(trails_[k].branch)].from_tip(1e9);
-        // Hair of other lengths does not lie side by side at equal parts.
-        const double length_difference = smooth_step(std::abs(length - own_length) / (kOfOneLength * length));
+        const BranchSurface& own_surface = surfaces_[static_cast<std::size_t>(trails_[k].branch)];
+        const double length = surface.from_tip(surface.end()), own_length = own_surface.from_tip(1e9);
+        // Hair of other lengths lies side by side at equal distances from the ferrule.
+        const double longer = length - own_length;
+        const double length_difference =
+            smooth_step((std::abs(longer) / length - kSideBySide) / (kApart - kSideBySide));
         const double landed = std::max(smooth_step(landed_part / kLanded), length_difference);
         if (landed >= 1) return;
         for (std::size_t i = 0; i < trails_[k].cuts.size(); ++i) {
             Cut& own = trails_[k].cuts[i];
             const double s = std::lerp(stretches_[k].begin, stretches_[k].end, sample_places()[i]);
-            const Cut other = other_of(own, surface.at(std::min(s, surface.end())));
+            const double beside = std::abs(longer) > kOneLength ? surface.place(own_surface.from_tip(s) + longer)
+                                                                : std::min(s, surface.end());
+            const Cut other = other_of(own, surface.at(beside));
             if (other.overlap() >= 0) continue;
             const TouchingPart to = touching_part(own, other);
             (to.side < 0 ? own.reach.x : own.reach.y) = std::lerp(std::min(to.over_half, farthest), 1.0, landed);
@@ -350,6 +366,8 @@ Cut cut_between(const Cut& p, const Cut& q, double f) {
             glm::dot(turn, turn) > 1e-6 ? glm::normalize(turn) : p.turn,
             glm::mix(p.slant, q.slant, f),
             glm::mix(p.bow, q.bow, f),
+            glm::mix(p.drop, q.drop, f),
+            p.free_side,
             glm::mix(p.reach, q.reach, f)};
 }
 
@@ -416,7 +434,8 @@ Recycled<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, st
                         .along = {},
                         .length = whole,
                         .strip = tuft.strips,
-                        .corners = tuft.branches[k].strip};
+                        .corners = tuft.branches[k].strip,
+                        .edge_short = tuft.branches[k].edge_short};
             for (const brush::Opening& opening : tuft.openings)
                 if (opening.first == trail.branch) trail.openings.push_back({opening.second, {}});
             trail.cuts.reserve(kSamples);

@@ -25,6 +25,8 @@ struct Cut {
     /// Metres, (u, v), along the hair: by how much a strip between spines of other lengths goes aslant and bends to its
     /// edges, see `bent`.
     Vec2 slant{0}, bow{0};
+    Vec2 drop{0};          ///< metres, (u, v), by how much the free edge of a toe lies further back than that
+    double free_side = 1;  ///< of that edge: 1 at +broad, −1 at −broad
     /// How far a strip touches from its middle towards −broad and +broad, over its half width there. Negative where all
     /// that touches lies beyond the middle.
     Vec2 reach{1, 1};
@@ -38,12 +40,18 @@ struct Cut {
     Vec3 broad() const { return turn.x * (a * e) + turn.y * (b * m); }
     Vec3 thick() const { return turn.x * (b * m) - turn.y * (a * e); }
     /// How far along the hair the place x of a strip's section lies from its broad axis: s slant + (1 − s²) bow, where
-    /// s is −1 and 1 at its edges.
+    /// s is −1 and 1 at its edges. The drop ends along the hair, as an ellipse does.
     Vec2 bent(double x) const {
         const double s = std::clamp(x / kStripChord, -1.0, 1.0);
-        return s * slant + (1 - s * s) * bow;
+        const Vec2 spline = s * slant + (1 - s * s) * bow;
+        return drop == Vec2{0} ? spline : spline + drop_part(s * free_side) * drop;
     }
-    bool is_bent() const { return slant != Vec2{0} || bow != Vec2{0}; }
+    bool is_bent() const { return slant != Vec2{0} || bow != Vec2{0} || drop != Vec2{0}; }
+    /// Part of the drop at s, counted towards the free edge.
+    static double drop_part(double s) {
+        const double from_inner = 0.5 * (1 + s);
+        return 1 - std::sqrt(std::max(0.0, 1 - from_inner * from_inner * from_inner));
+    }
 
     static constexpr double kStripChord = 0.8862269254527580;  ///< √π/2, see brush::in_branch
 };
@@ -67,6 +75,7 @@ struct Trail {
     double length = 1;                ///< of the branch's hair over the tuft's
     bool strip = false;               ///< a spine of a row: its hair fills a rectangle, not a disc
     Recycled<Vec2> corners;           ///< of that strip, see brush::Branch
+    double edge_short = 0;            ///< metres, see brush::Branch
     Recycled<TrailOpening> openings;  ///< to neighbours that follow in brush::TuftState::openings
 
     /// Half the thickness of the hair at x in [−1, 1] of a section, over b.
@@ -82,9 +91,9 @@ struct TrailPart {
 };
 
 /// Returns the touching parts of all branches, cut into sections; see `outlines_of` (outline.h) for the arguments.
-/// `length` is the tuft's, metres. Between two spines of a row of one length the underside is linear at equal parts of
-/// their hair: where one touches by o > 0 and the other is o' above the surface, what touches ends at o / (o + o') of
-/// the way. So a row that lands or leaves spine by spine goes out evenly to its sides (`Cut::reach`).
+/// `length` is the tuft's, metres. Between two spines of a row of about one length the underside is linear at equal
+/// distances from the ferrule: where one touches by o > 0 and the other is o' above the surface, what touches ends at
+/// o / (o + o') of the way. So a row that lands or leaves spine by spine goes out evenly to its sides (`Cut::reach`).
 Recycled<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
                             double length, double film);
 
@@ -124,7 +133,9 @@ void gather_trails(Recycled<Trail>& trails, double part);
 /// what touches. A section turned by half a turn is spread as the same hair is. A row that stands aslant to its hair so
 /// keeps one edge. To three times their width at most. Spines that differ in length widen only, along their own broad
 /// sides. Along the hair the ends of the strips lie on the quadratic B-spline of the spines: from midway
-/// to midway, M₋, F_k, M₊ the control points of each, so that the toe of a filbert is one smooth curve.
+/// to midway, M₋, F_k, M₊ the control points of each, so that the toe of a filbert is one smooth curve. At the free
+/// edge of an outermost strip of a toe the hair ends earlier, by `Trail::edge_short`; where less than that touches, the
+/// edge is still in the air.
 void fill_rows(Recycled<Trail>& trails);
 
 /// Adds the upright hair round the foot of the axis, by `foot.share`: a straight taper from the widest section to

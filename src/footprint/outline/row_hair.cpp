@@ -123,8 +123,9 @@ void spread_section(Cut& cut, const Halves& halves) {
 }
 
 /// Bends a spread section along its hair, a unit vector on the surface, so that its edges lie midway to its neighbours
-/// there. `spine`: where the section's spine is, (u, v).
-void bend_section(Cut& cut, const Halves& halves, const Vec2& spine, const Vec2& hair) {
+/// there. `spine`: where the section's spine is, (u, v). `missing`: metres, of the hair at the free edge of an
+/// outermost strip.
+void bend_section(Cut& cut, const Halves& halves, const Vec2& spine, const Vec2& hair, double missing) {
     if (!halves.to_next && !halves.to_last) return;
     const Vec2 broad(cut.broad());
     const double half = Cut::kStripChord * glm::length(broad);
@@ -153,6 +154,39 @@ void bend_section(Cut& cut, const Halves& halves, const Vec2& spine, const Vec2&
     cut.centre += mean * hair;
     cut.slant = slant * hair;
     cut.bow = bow * hair;
+    if (missing <= 0 || (right && left)) return;
+    // What is missing at the free edge beyond what the straight line goes back by.
+    const double drop = std::max(0.0, missing * part + (right ? l : r) - middle);
+    cut.drop = -bounded(drop) * hair;
+    cut.free_side = right ? -1 : 1;
+}
+
+/// Metres of a trail's hair that touch.
+double touching_hair(const Trail& trail) {
+    const Cut &tip = trail.cuts.front(), &heel = trail.cuts.back();
+    return glm::length(Vec3(tip.centre - heel.centre, tip.z - heel.z));
+}
+
+/// Part of an outermost strip's half width, towards its free edge, up to which the hair of a toe touches. `straight`:
+/// metres, by which the line through its spine and its neighbour's goes back from spine to edge.
+double toe_reach(const Trail& trail, double straight) {
+    constexpr int kSteps = 16;
+    const double touching = touching_hair(trail), drop = trail.edge_short - straight;
+    if (trail.edge_short <= touching) return 1;
+    double before = 0;
+    for (int i = 1; i <= kSteps; ++i) {
+        const double s = static_cast<double>(i) / kSteps, missing = s * straight + drop * Cut::drop_part(s);
+        if (missing > touching) return (i - 1 + (touching - before) / (missing - before)) / kSteps;
+        before = missing;
+    }
+    return 1;
+}
+
+/// Ends what touches of an outermost strip at `reach` of its half width on its free side.
+void bound_toe(Cut& cut, const Halves& halves, double reach) {
+    if (halves.to_next.has_value() == halves.to_last.has_value()) return;
+    const bool with_row = way_along(halves.row, cut.broad(), 1) >= 0, free_with_row = !halves.to_next;
+    (free_with_row == with_row ? cut.reach.y : cut.reach.x) *= reach;
 }
 
 /// Whether `other` is the next in its row, and as many of its sections are known.
@@ -166,10 +200,15 @@ bool is_followed_by(const Trail& trail, const Trail& other) {
 
 void fill_rows(Recycled<Trail>& trails) {
     Recycled<Recycled<Halves>> halves;
+    Recycled<double> straight(trails.size(), 0.0);  // metres, half of what a neighbour's hair is longer
     for (const Trail& trail : trails) halves.emplace_back(trail.cuts.size());
     for (std::size_t k = 0; k < trails.size(); ++k)
         for (std::size_t l = 0; l < trails.size(); ++l) {
             if (!trails[k].strip || !is_followed_by(trails[k], trails[l])) continue;
+            const double touching = trails[k].along.empty() ? 0 : trails[k].along.front() - trails[k].along.back();
+            const double metres = touching > 1e-9 ? touching_hair(trails[k]) / touching : 0;  // of the tuft's hair
+            straight[k] = std::max(0.0, 0.5 * metres * (trails[l].length - trails[k].length));
+            straight[l] = std::max(0.0, 0.5 * metres * (trails[k].length - trails[l].length));
             const double differ = smooth_step(std::abs(trails[l].length - trails[k].length) / kOneLength);
             for (std::size_t i = 0; i < trails[k].cuts.size(); ++i) {
                 const Cut &p = trails[k].cuts[i], &q = trails[l].cuts[i];
@@ -186,10 +225,16 @@ void fill_rows(Recycled<Trail>& trails) {
         Trail& trail = trails[k];
         const Vec2 run = trail.cuts.front().centre - trail.cuts.back().centre;
         const double length = glm::length(run);
+        const double reach = trail.edge_short > 0 ? toe_reach(trail, straight[k]) : 1;
         for (std::size_t i = 0; i < trail.cuts.size(); ++i) {
             const Vec2 spine = trail.cuts[i].centre;
             spread_section(trail.cuts[i], halves[k][i]);
-            if (length > 1e-9) bend_section(trail.cuts[i], halves[k][i], spine, run / length);
+            if (reach < 1) bound_toe(trail.cuts[i], halves[k][i], reach);
+            if (!(length > 1e-9)) continue;
+            // All hair of a row leaves the surface side by side; so less is missing nearer to there.
+            const double from_heel = glm::dot(spine - trail.cuts.back().centre, run) / (length * length);
+            const double missing = trail.edge_short * std::clamp(from_heel, 0.0, 1.0);
+            bend_section(trail.cuts[i], halves[k][i], spine, run / length, missing);
         }
     }
 }

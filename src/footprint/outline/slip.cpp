@@ -11,10 +11,11 @@ constexpr double kStill = 1e-7;  // metres from stamp to stamp: less is no motio
 /// Where a trail's hair lies between its cuts.
 struct Place {
     Vec2 centre{0}, half{0};
-    Vec2 slant{0}, bow{0};  ///< of a strip, see Cut
+    Vec2 slant{0}, bow{0}, drop{0};  ///< of a strip, see Cut
+    double free_side = 1;
 
     /// Of hair at x in [−1, 1], from where a straight strip has it.
-    Vec2 bent(double x) const { return Cut{.slant = slant, .bow = bow}.bent(x); }
+    Vec2 bent(double x) const { return Cut{.slant = slant, .bow = bow, .drop = drop, .free_side = free_side}.bent(x); }
 };
 
 Place place_at(const Trail& trail, double along) {
@@ -26,7 +27,7 @@ Place place_at(const Trail& trail, double along) {
     const Cut &p = trail.cuts[i], &q = trail.cuts[j];
     const auto half = [&](const Cut& cut) { return trail.strip ? Vec2(cut.broad()) : cut.a * Vec2(cut.e); };
     return {glm::mix(p.centre, q.centre, f), glm::mix(half(p), half(q), f), glm::mix(p.slant, q.slant, f),
-            glm::mix(p.bow, q.bow, f)};
+            glm::mix(p.bow, q.bow, f),       glm::mix(p.drop, q.drop, f),   p.free_side};
 }
 
 /// The trail of the same branch that has most of its hair.
@@ -56,6 +57,7 @@ void change_frame(Recycled<Trail>& trails, const Frame& from, const Frame& to) {
             cut.m = to_other(cut.m);
             cut.slant = Vec2(to_other(Vec3(cut.slant, 0)));
             cut.bow = Vec2(to_other(Vec3(cut.bow, 0)));
+            cut.drop = Vec2(to_other(Vec3(cut.drop, 0)));
         }
 }
 
