@@ -172,6 +172,25 @@ TEST(TexelMap, PacksAtlasesFrom4096TexelsOn) {
     EXPECT_TRUE(is_packed(TexelStore::packed, 16));
 }
 
+TEST(TexelMap, AnUnpackedTileDoesNotDependOnWhatTheBufferHeld) {
+    // Charts so small that there are tiles of one cluster, of a few and of many, all with texels that no chart covers.
+    const Unwrapped u = testing::sphere(0.02, 9);
+    const TexelMap map = build_texel_map(u.mesh, u.atlas, {}, TexelStore::packed);
+    TexelShape zeros{}, marked{};
+    std::size_t uncovered = 0;
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
+        zeros.px.fill(0), zeros.py.fill(0), zeros.pz.fill(0);
+        marked.px.fill(7), marked.py.fill(7), marked.pz.fill(7);
+        shape_of(map, slot, zeros);
+        shape_of(map, slot, marked);
+        uncovered += static_cast<std::size_t>(std::ranges::count(map.tiles[slot].cluster, kNoCluster));
+        EXPECT_EQ(zeros.px, marked.px) << "slot " << slot;
+        EXPECT_EQ(zeros.py, marked.py) << "slot " << slot;
+        EXPECT_EQ(zeros.pz, marked.pz) << "slot " << slot;
+    }
+    EXPECT_GT(uncovered, 0u);
+}
+
 TEST(TexelMap, RefusesAnAtlasOfAnotherMeshAndSurvivesBadCoordinates) {
     Unwrapped u = testing::sheet(0.1, 1, 40);
     Unwrapped bad = u;

@@ -119,29 +119,26 @@ PackedShape pack_shape(const TexelShape& shape, const TexelTile& tile, std::span
 const TexelShape& shape_of(const TexelMap& map, std::uint32_t slot, TexelShape& buffer) {
     if (map.packed.empty()) return map.shapes[slot];
     const PackedShape& p = map.packed[slot];
-    const std::uint32_t first = map.cluster_start[slot];
-    const std::size_t n = map.cluster_start[slot + 1] - first;
-    unpack_normals(p, buffer);
-    if (n == 1) {
-        const PackedBox& box = map.boxes[first];
-        unpack_axis(p.x.data(), box.lo.x, box.step, buffer.px.data());
-        unpack_axis(p.y.data(), box.lo.y, box.step, buffer.py.data());
-        unpack_axis(p.z.data(), box.lo.z, box.step, buffer.pz.data());
-        return buffer;
-    }
+    const std::span boxes =
+        std::span(map.boxes).subspan(map.cluster_start[slot], map.cluster_start[slot + 1] - map.cluster_start[slot]);
     const auto& cluster = map.tiles[slot].cluster;
-    if (n > kFewClusters) {
+    unpack_normals(p, buffer);
+    if (boxes.size() > kFewClusters) {
         for (int t = 0; t < kTileTexels; ++t) {
-            if (cluster[t] == kNoCluster) continue;
-            const Vec3f at = unpack_position(p, map.boxes[first + cluster[t]], t);
+            const Vec3f at = unpack_position(p, boxes[cluster[t] == kNoCluster ? 0 : cluster[t]], t);
             buffer.px[t] = at.x;
             buffer.py[t] = at.y;
             buffer.pz[t] = at.z;
         }
         return buffer;
     }
-    for (std::size_t k = 0; k < n; ++k) {
-        const PackedBox& box = map.boxes[first + k];
+    // The first box for all, also for texels that no chart covers: else they kept what the buffer held.
+    const PackedBox first = boxes.empty() ? PackedBox{} : boxes.front();
+    unpack_axis(p.x.data(), first.lo.x, first.step, buffer.px.data());
+    unpack_axis(p.y.data(), first.lo.y, first.step, buffer.py.data());
+    unpack_axis(p.z.data(), first.lo.z, first.step, buffer.pz.data());
+    for (std::size_t k = 1; k < boxes.size(); ++k) {
+        const PackedBox& box = boxes[k];
         const auto which = static_cast<std::uint8_t>(k);
         unpack_axis(p.x.data(), cluster.data(), which, box.lo.x, box.step, buffer.px.data());
         unpack_axis(p.y.data(), cluster.data(), which, box.lo.y, box.step, buffer.py.data());
