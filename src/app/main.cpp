@@ -118,7 +118,7 @@ void loop(app::Display& display, const Options& options) {
     while (!session.project.closing.quit && !(script && script->finished())) {
         display.poll(events, !events.empty() ? 0 : script ? script->patience(studio) : studio.patience());
         if (display.closed()) {
-            display.stay_open();
+            display.cancel_close();
             app::request_close(session, {});
         }
         if (display.lost() || (script && script->take_loss())) {
@@ -129,7 +129,7 @@ void loop(app::Display& display, const Options& options) {
             studio.make_graphics();
         }
         if (const auto size = script ? script->take_size() : std::nullopt) display.resize(size->first, size->second);
-        if (Message trouble = display.take_trouble(); !trouble.empty())
+        if (Message trouble = display.take_fault(); !trouble.empty())
             app::show_message(session.status, std::move(trouble));
         studio.set_content_scale(display.scale());  // another one on another monitor
         const double now = display.now();

@@ -22,9 +22,9 @@ struct NodeWalls {
 /// behind the other's plane.
 bool face_each_other(const NodeContact& a, const NodeContact& b);
 
-/// Returns the walls that a node of the given radius, metres, lies between whose nearest surface is `nearest`, where
-/// `known` are the walls that it or its neighbour lay between a little before; `nearest` alone where it is not near
-/// another. Cost: one or two searches for a closest point, within some millimetres.
+/// Returns the walls that a node lies between. `nearest`: its contact with the nearest surface, returned alone where no
+/// other wall is near. `known`: the walls that it or its neighbour lay between a little before. Metres. Cost: one or
+/// two searches for a closest point, within some millimetres.
 NodeWalls find_walls(const mesh::SurfaceQuery& surface, const Vec3& node, const NodeContact& nearest, double radius,
                      const NodeWalls& known, const NodeContactOptions& options);
 

@@ -13,7 +13,8 @@
 /// Pictures of pieces of film at true size, from the maps of a decoration. Called by sheet.h.
 namespace tuft::decal {
 
-/// Reads a map bilinearly at a UV of the whole atlas, v up, into `out` [channels].
+/// Reads a map bilinearly at a UV of the whole atlas, v up, into `out` [channels]. Centres of texels lie at + 0.5;
+/// beyond the outermost the value is theirs.
 template <class T>
 void sample(const ink::AtlasMap<T>& map, const Vec2& uv, float* out) {
     const auto size = static_cast<double>(map.size);

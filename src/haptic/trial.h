@@ -79,14 +79,14 @@ TrialReport run_trial(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface
                       const TrialOptions& options);
 
 /// What goes wrong in `periods_to_stop`.
-enum class Trouble { silence, not_finite, jump, pause, emergency };
-inline constexpr Trouble kTroubles[] = {Trouble::silence, Trouble::not_finite, Trouble::jump, Trouble::pause,
-                                        Trouble::emergency};
+enum class TrialFault { silence, not_finite, jump, pause, emergency };
+inline constexpr TrialFault kTrialFaults[] = {TrialFault::silence, TrialFault::not_finite, TrialFault::jump,
+                                              TrialFault::pause, TrialFault::emergency};
 
 /// Runs a trial up to `from`, s, where something goes wrong, and returns after how many periods no force leaves any
 /// more; -1 where there was none before, or it did not end within 100.
 int periods_to_stop(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface, const HandPath& path,
-                    const TrialOptions& options, Trouble trouble, double from);
+                    const TrialOptions& options, TrialFault trouble, double from);
 
 /// Worst of both; counts and hashes added up.
 void merge(TrialReport& into, const TrialReport& from);

@@ -68,7 +68,7 @@ void move_in_space(stroke::StrokeSamples& trace, const Rigid& r, const Vec3& cen
 
 void shake_hand(stroke::StrokeSamples& trace, const Tolerance& t, std::uint64_t seed) {
     const int axes = trace.flat ? 2 : 3;
-    std::vector<Wander> wander;
+    std::vector<RandomDeviation> wander;
     wander.reserve(static_cast<std::size_t>(axes));
     for (int i = 0; i < axes; ++i)
         wander.emplace_back(t.hand_mm * kMillimetre, t.hand_length_mm * kMillimetre,
@@ -100,13 +100,13 @@ double normal_number(std::uint64_t seed, std::uint64_t counter) {
     return std::sqrt(-2 * std::log(u)) * std::cos(2 * pi * v);
 }
 
-Wander::Wander(double spread, double length, std::uint64_t seed)
+RandomDeviation::RandomDeviation(double spread, double length, std::uint64_t seed)
     : waves_(kWaves), amplitude_(spread * std::sqrt(2.0 / kWaves)) {
     for (std::size_t i = 0; i < kWaves; ++i)
         waves_[i] = {normal_number(seed, i) / length, 2 * pi * uniform(hash_bits(seed, 1), i)};
 }
 
-double Wander::at(double s) const {
+double RandomDeviation::at(double s) const {
     double sum = 0;
     for (const Wave& w : waves_) sum += std::cos(w.number * s + w.phase);
     return amplitude_ * sum;

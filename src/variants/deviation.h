@@ -15,14 +15,14 @@ namespace tuft::variants {
 /// Returns a standard normal number [BoxMuller1958], the same for the same seed and counter.
 double normal_number(std::uint64_t seed, std::uint64_t counter);
 
-/// Smooth random function of the path length s with standard deviation `spread` and correlation
+/// Smooth random function of the path length s, metres, with standard deviation `spread` and correlation
 ///
 ///     exp(−Δs² / 2 length²),
 ///
 /// as a sum of 48 waves with random wave numbers [Rahimi2007]. Both hold exactly in the mean over seeds.
-class Wander {
+class RandomDeviation {
   public:
-    Wander(double spread, double length, std::uint64_t seed);
+    RandomDeviation(double spread, double length, std::uint64_t seed);
     double at(double s) const;
 
   private:
@@ -43,7 +43,8 @@ class Wander {
 /// Strokes in space are those of a fixture: they move rigidly, by z along each model axis, and turn about the middle of
 /// their box by a rotation vector of three z.
 ///
-/// Then the path of each stroke deviates by a `Wander` along each axis. Entries on the palette stay as they are.
+/// Then the path of each stroke deviates by a `RandomDeviation` along each axis. Entries on the palette stay as they
+/// are.
 void deviate(std::vector<stroke::JournalEntry>& entries, const Tolerance& tolerance, std::uint64_t seed);
 
 }  // namespace tuft::variants

@@ -217,11 +217,11 @@ Jobs lay_out(const Plan& plan, const std::vector<Task>& tasks, const fs::path& f
     return Jobs(folder);
 }
 
-Ran run_task(const Jobs& jobs, std::size_t i, const PaintTask& paint, ContentHashes& known) {
-    if (jobs.state(i) == TaskState::done) return Ran::done_before;
+TaskResult run_task(const Jobs& jobs, std::size_t i, const PaintTask& paint, ContentHashes& known) {
+    if (jobs.state(i) == TaskState::done) return TaskResult::done_before;
     const auto mine = jobs.lock(i);
-    if (!mine) return Ran::taken;
-    if (jobs.state(i) == TaskState::done) return Ran::done_before;
+    if (!mine) return TaskResult::taken;
+    if (jobs.state(i) == TaskState::done) return TaskResult::done_before;
     try {
         const Task task = jobs.task(i);
         if (task.program != program_version())
@@ -230,13 +230,13 @@ Ran run_task(const Jobs& jobs, std::size_t i, const PaintTask& paint, ContentHas
             if (const auto at = task.contents.find(name); at == task.contents.end() || at->second != hash)
                 throw Error(fmt::format("'{}' has changed since the tasks were written; write them again", name));
         jobs.store(i, paint(task));
-        return Ran::painted;
+        return TaskResult::painted;
     } catch (const UsageError& error) {
         jobs.store_failure(i, error.what());
     } catch (const Error& error) {
         jobs.store_failure(i, error.what());
     }
-    return Ran::failed;
+    return TaskResult::failed;
 }
 
 }  // namespace tuft::variants

@@ -86,7 +86,7 @@ Jobs lay_out(const Plan& plan, const std::vector<Task>& tasks, const std::filesy
 using PaintTask = std::function<Outcome(const Task& task)>;
 
 /// What running a task came to.
-enum class Ran {
+enum class TaskResult {
     painted,
     done_before,
     taken,  ///< by another process
@@ -96,6 +96,6 @@ enum class Ran {
 /// Runs a task that is not done: locks it, checks that its files are those that it was made for (`known`:
 /// `contents_of`), paints it and stores the result or the failure. Other exceptions than `Error` pass; the task stays
 /// open then.
-Ran run_task(const Jobs& jobs, std::size_t i, const PaintTask& paint, ContentHashes& known);
+TaskResult run_task(const Jobs& jobs, std::size_t i, const PaintTask& paint, ContentHashes& known);
 
 }  // namespace tuft::variants

@@ -197,11 +197,11 @@ class Crew {
 bool report_start(std::size_t i) {
     return write_line(fmt::format("start {}\n", i));
 }
-bool report_ran(std::size_t i, Ran ran) {
+bool report_result(std::size_t i, TaskResult ran) {
     return write_line(fmt::format("{} {}\n",
-                                  ran == Ran::painted  ? "painted"
-                                  : ran == Ran::failed ? "failed"
-                                                       : "left",
+                                  ran == TaskResult::painted  ? "painted"
+                                  : ran == TaskResult::failed ? "failed"
+                                                              : "left",
                                   i));
 }
 
@@ -219,11 +219,11 @@ WorkersReport run_open_tasks(const Jobs& jobs, const PaintTask& paint, bool repo
             if (reports && !report_start(i)) throw Cancelled();
             return paint(task);
         };
-        const Ran ran = run_task(jobs, i, begun, known);
-        if (ran == Ran::painted) ++out.painted;
-        if (ran == Ran::failed) ++out.failed;
-        if (ran == Ran::taken) ++out.open;
-        if (reports && !report_ran(i, ran)) throw Cancelled();
+        const TaskResult ran = run_task(jobs, i, begun, known);
+        if (ran == TaskResult::painted) ++out.painted;
+        if (ran == TaskResult::failed) ++out.failed;
+        if (ran == TaskResult::taken) ++out.open;
+        if (reports && !report_result(i, ran)) throw Cancelled();
     }
     return out;
 }

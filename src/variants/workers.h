@@ -11,9 +11,9 @@
 namespace tuft::variants {
 
 /// What a worker says of a task on its standard output, one line each: "start 17", "painted 17", "failed 17".
-/// `report_ran` writes one; it returns false where nobody reads it.
+/// `report_result` writes one; it returns false where nobody reads it.
 bool report_start(std::size_t i);
-bool report_ran(std::size_t i, Ran ran);
+bool report_result(std::size_t i, TaskResult ran);
 
 /// Worker processes to start.
 struct WorkerOptions {

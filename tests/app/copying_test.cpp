@@ -195,7 +195,7 @@ TEST_F(Copying, IsKeptInAProjectWithItsPicture) {
     click(CopyEdit::split, vertical_);
     const KeptCopy kept = read_copy(request_);
     const KeptCopy back = kept_copy(to_attachment(kept));
-    EXPECT_TRUE(back.says_the_same(kept));
+    EXPECT_TRUE(back.has_same_content(kept));
     EXPECT_EQ(back.correction.cuts.size(), 1u);
     EXPECT_EQ(writer::cuts_text(back.correction.cuts), writer::cuts_text(request_.correction.cuts));
     EXPECT_EQ(back.correction.order, request_.correction.order);

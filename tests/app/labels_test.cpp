@@ -22,7 +22,7 @@ float characters(const std::string& text) {
     return n;
 }
 
-void expect_told_apart(const std::vector<std::string>& names, const LabelRoom& room) {
+void expect_told_apart(const std::vector<std::string>& names, const LabelSpace& room) {
     const std::vector<std::string> labels = make_distinct(names, room);
     ASSERT_EQ(labels.size(), names.size());
     std::set<std::string> different(labels.begin(), labels.end());

@@ -91,14 +91,14 @@ TEST_F(SpaceMouseTest, AnUnpluggedOneStandsStillAndOneThatComesBackIsTaken) {
     ASSERT_TRUE(comes_true([&] { return mouse->held(); }));
     daemon->device(1);  // the device is unplugged
     std::string reported;
-    ASSERT_TRUE(comes_true([&] { return !(reported = mouse->take_trouble().text()).empty(); }));
+    ASSERT_TRUE(comes_true([&] { return !(reported = mouse->take_fault().text()).empty(); }));
     EXPECT_NE(reported.find("unplugged"), std::string::npos) << reported;
     EXPECT_FALSE(mouse->held());
 
     daemon->motion({0, 0, 0, 350, 0, 0});
     ASSERT_TRUE(comes_true([&] { return mouse->held(); }));
     daemon.reset();  // the daemon is killed
-    ASSERT_TRUE(comes_true([&] { return !(reported = mouse->take_trouble().text()).empty(); }));
+    ASSERT_TRUE(comes_true([&] { return !(reported = mouse->take_fault().text()).empty(); }));
     EXPECT_NE(reported.find("ended"), std::string::npos) << reported;
     EXPECT_FALSE(mouse->held());
 
@@ -115,7 +115,7 @@ TEST_F(SpaceMouseTest, WithoutADaemonNothingComesAndNothingHangs) {
     EventQueue events;
     mouse->merge(events, 1);
     EXPECT_TRUE(events.empty());
-    EXPECT_TRUE(mouse->take_trouble().empty());
+    EXPECT_TRUE(mouse->take_fault().empty());
     EXPECT_EQ(woken_, 0);
 }
 

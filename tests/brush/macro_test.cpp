@@ -73,7 +73,7 @@ TEST(MacroSkeleton, AKinkKeepsTheArcOverItsChord) {
     const std::vector<HalfSpace> above = half_spaces({&plane, 1}, nodes);
     BentSkeleton bent = deform_skeleton(nodes, t, above, {0});
     const Vec3 tip = bent.nodes.front();
-    kink_up(bent, t, above, kLength, 1);
+    add_kink(bent, t, above, kLength, 1);
     double arc = 0;
     for (std::size_t i = 0; t[i] < bent.touch; ++i)
         arc += glm::length((t[i + 1] < bent.touch ? bent.nodes[i + 1] : bent.pivot) - bent.nodes[i]);

@@ -13,11 +13,11 @@ TEST(Safety, NoForceTwentyMillisecondsAfterAnyTrouble) {
     const brush::Tuft tuft = tuft_of("wolf-medium");
     const auto path = hand_path(HandMotion::rest, f.place, tuft.preset);
     for (const DeviceLimits& limits : device_presets())
-        for (const Trouble trouble : kTroubles) {
+        for (const TrialFault trouble : kTrialFaults) {
             const int periods = periods_to_stop(tuft, *f.surface, path, {.law = {.limits = limits}}, trouble, 2.2);
             EXPECT_GE(periods, 0) << limits.name << " " << static_cast<int>(trouble);
             EXPECT_LT(periods, 20) << limits.name << " " << static_cast<int>(trouble);
-            if (trouble == Trouble::not_finite || trouble == Trouble::jump || trouble == Trouble::emergency) {
+            if (trouble == TrialFault::not_finite || trouble == TrialFault::jump || trouble == TrialFault::emergency) {
                 EXPECT_EQ(periods, 0) << limits.name;
             }
         }

@@ -56,7 +56,7 @@ void level(const Field& w, const Geometry& g, Work& work, Add&& add) {
     for (float& v : work.dw) v += 0.0f;  // no zero's sign counts
     add(work.dw);
     const Ripples found = find_ripples(w, g, 0.3f);
-    const Carried over = flow_over_link(links[0], {1.5f, 2}, {tile->grid.p[40], tile->grid.p[80]}, {0.5f, 0.4f});
+    const LinkFlow over = flow_over_link(links[0], {1.5f, 2}, {tile->grid.p[40], tile->grid.p[80]}, {0.5f, 0.4f});
     add(std::array{over.flow + 0.0f, over.a, over.b + 0.0f,
                    static_cast<float>(found.strong + 2 * found.faint + 4 * found.rims)});
 }
@@ -167,7 +167,7 @@ int main(int n_arguments, char** arguments) {
         work.on_relief = round % 3 == 2;
         fluxes(work, g, step);
         if (step.limit.most > 0) {
-            Beside beside{.blocks = {0xffff, 0xffff, 0xffff, 0xffff}, .here = g.blocks};
+            TileNeighbours beside{.blocks = {0xffff, 0xffff, 0xffff, 0xffff}, .here = g.blocks};
             beside.liquid = {w_at[3], w_at[5], w_at[1], w_at[7]};
             film_block_flow(work, g, beside, step);
         }

@@ -178,8 +178,8 @@ TEST(ForeignFormats, AreOfMetresAndKnownByTheirExtensionInAnyCase) {
     // VRML is in metres by its standard, CAD writes it in millimetres; its axes are fixed.
     for (const char* name : {"a.obj", "a.stl", "a.wrl", "a.VRML"})
         EXPECT_EQ(metres_per_unit_of(name), std::nullopt) << name;
-    EXPECT_TRUE(fixes_up("a.wrl"));
-    EXPECT_FALSE(fixes_up("a.obj"));
+    EXPECT_TRUE(has_fixed_up_axis("a.wrl"));
+    EXPECT_FALSE(has_fixed_up_axis("a.obj"));
     EXPECT_FALSE(is_model_file("a.blend"));
 }
 

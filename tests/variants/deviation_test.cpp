@@ -41,13 +41,13 @@ TEST(Deviation, NormalNumbersHaveTheMomentsOfTheNormalDistribution) {
     EXPECT_NEAR(m4, 3, 5 * std::sqrt(96.0 / kN));
 }
 
-TEST(Deviation, AWanderHasItsSpreadAndItsCorrelation) {
+TEST(Deviation, ARandomDeviationHasItsSpreadAndItsCorrelation) {
     constexpr int kN = 20'000;
     const double spread = 0.3, length = 8;
     for (const double lag : {0.0, 4.0, 8.0, 16.0}) {
         double sum = 0;
         for (int i = 0; i < kN; ++i) {
-            const Wander w(spread, length, static_cast<std::uint64_t>(i));
+            const RandomDeviation w(spread, length, static_cast<std::uint64_t>(i));
             sum += w.at(3) * w.at(3 + lag) / kN;
         }
         // The product of two normal numbers has at most twice their variance: five standard errors.

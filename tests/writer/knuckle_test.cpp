@@ -75,7 +75,7 @@ TEST(Knuckles, ASwellingCostsSharpnessUnlessAnotherStrokeLiesOverIt) {
     swollen.push_back(disc({200, 122}, 14));
     const std::vector<float> plain = coverage_of(cells_of(bar())), ink = coverage_of(cells_of(swollen));
     FitTarget target{.wanted = cells_of(bar()), .weights = {}};
-    const std::vector<EdgeTurn> turns = turns_wanted(target.wanted);
+    const std::vector<EdgeTurn> turns = wanted_edge_turns(target.wanted);
     EXPECT_EQ(sharpness_of(target, turns, plain), 0);
     EXPECT_GT(sharpness_of(target, turns, ink), 3);
     target.weights.assign(target.wanted.inside.size(), 0.25f);

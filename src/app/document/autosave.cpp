@@ -123,7 +123,7 @@ Message Autosave::start(const std::filesystem::path& path, const std::string& so
 
 void Autosave::prepare(stroke::Document& painting, const std::string& brush, const std::string& ink) {
     if (wanted_) {
-        const Wanted wanted = *wanted_;
+        const PendingProject wanted = *wanted_;
         if (Message fault = start(wanted.path, wanted.source, wanted.frame, painting); !fault.empty())
             wanted_->fault = trouble_ = std::move(fault);
     }

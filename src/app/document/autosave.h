@@ -86,14 +86,14 @@ class Autosave {
     void flush();
     void append(std::span<const stroke::JournalEntry> strokes);
 
-    struct Wanted {
+    struct PendingProject {
         std::filesystem::path path;
         std::string source;
         FileFrame frame;
         Message fault;  ///< why it does not exist yet
     };
     std::optional<io::Project> project_;
-    std::optional<Wanted> wanted_;
+    std::optional<PendingProject> wanted_;
     std::vector<stroke::JournalEntry> pending_;
     std::vector<stroke::EntryMark> on_disk_;
     std::map<std::string, std::string> brushes_, inks_;                       ///< TOML by name

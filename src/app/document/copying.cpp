@@ -174,7 +174,7 @@ KeptCopy read_copy(const writer::TextRequest& request) {
 
 void CopyReader::read(const writer::TextRequest& request, std::span<const KeptCopy> kept) {
     const fs::path file = fs::absolute(request.like);
-    Wish wish{request, modified_time(file)};
+    CopyRequest wish{request, modified_time(file)};
     const auto is_kept = [&](const KeptCopy& k) {
         return k.file == file && k.read_at == wish.time && k.name == request.text && k.correction == request.correction;
     };

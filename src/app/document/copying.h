@@ -82,7 +82,7 @@ struct KeptCopy {
     std::optional<std::filesystem::file_time_type> read_at;  ///< when `file` was written, where `bytes` are of it
 
     /// Whether a project that keeps this one keeps that one.
-    bool says_the_same(const KeptCopy& other) const {
+    bool has_same_content(const KeptCopy& other) const {
         return id == other.id && file == other.file && name == other.name && correction == other.correction;
     }
 };
@@ -116,15 +116,15 @@ class CopyReader {
     bool busy() const { return reading_.valid(); }
 
   private:
-    struct Wish {
+    struct CopyRequest {
         writer::TextRequest request;
         std::optional<std::filesystem::file_time_type> time;  ///< of the picture's file when it was asked for
-        bool operator==(const Wish&) const = default;
+        bool operator==(const CopyRequest&) const = default;
     };
     void begin();
 
-    std::deque<Wish> wanted_;
-    Wish asked_;  ///< the last one
+    std::deque<CopyRequest> wanted_;
+    CopyRequest asked_;  ///< the last one
     std::future<Read> reading_;
 };
 

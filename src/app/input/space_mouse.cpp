@@ -58,7 +58,7 @@ class Daemon : public SpaceMouse {
         const std::scoped_lock lock(mutex_);
         return cap_.push != Vec3(0) || cap_.twist != Vec3(0);
     }
-    Message take_trouble() override {
+    Message take_fault() override {
         const std::scoped_lock lock(mutex_);
         return std::exchange(trouble_, {});
     }

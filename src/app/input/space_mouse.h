@@ -23,7 +23,7 @@ class SpaceMouse {
     /// True while the cap is deflected.
     virtual bool held() const = 0;
     /// Returns a message when the device or its daemon appeared or vanished; else "".
-    virtual Message take_trouble() = 0;
+    virtual Message take_fault() = 0;
 };
 
 /// Opens the device. `wake` is called on the listening thread whenever a report arrives. At most one exists at a time:

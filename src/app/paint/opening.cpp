@@ -84,7 +84,7 @@ Inspected inspect_file(const fs::path& path, const io::CadReading& cad, const Pr
     for (const Vec3& p : out.soup.points) bounds.add(p);
     const auto fixed = io::metres_per_unit_of(path);
     out.unit_fixed = fixed.has_value();
-    out.up_fixed = io::fixes_up(path);
+    out.up_fixed = io::has_fixed_up_axis(path);
     const mesh::UnitGuess guess = mesh::guess_unit(bounds);
     mesh::RepairOptions repair;
     repair.metres_per_unit = fixed.value_or(guess.metres_per_unit);
@@ -137,7 +137,7 @@ PaintWork prepare_model(Inspected in, const OpenOptions& options, const fs::path
     stroke::ModelOptions prepare;
     const auto fixed = io::metres_per_unit_of(in.path);
     prepare.repair.metres_per_unit = fixed.value_or(metres_per(options.frame.unit).value_or(kMillimetre));
-    prepare.repair.y_up = options.frame.y_up && !io::fixes_up(in.path);
+    prepare.repair.y_up = options.frame.y_up && !io::has_fixed_up_axis(in.path);
     prepare.unwrap.size = options.atlas_size;
     prepare.cache = stroke::shared_model_cache();
     prepare.progress = progress;

@@ -216,9 +216,9 @@ void brush_cell(Session& s, const std::string& name, ImVec2 size) {
 
 /// All brushes in rows, a group for each family, its name under it. Where there is little room, they stand group by
 /// group without a gap. Returns the number of rows; without `draws` nothing else.
-float rack_rows(Session& s, const std::vector<BrushFamily>& families, ToolRoom room, bool draws) {
+float rack_rows(Session& s, const std::vector<BrushFamily>& families, ToolDensity room, bool draws) {
     const Ui& ui = s.ui;
-    const bool named = room != ToolRoom::tight;
+    const bool named = room != ToolDensity::tight;
     const float all = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX(), gap = named ? ui.px(8) : 0,
                 letters = 0.8f * ImGui::GetFontSize();
     // Tufts are thin: as many fit in a row as have room for one each.
@@ -358,14 +358,14 @@ void browser_top(Session& s) {
 
 }  // namespace
 
-Savings brush_rack(Session& s, ToolRoom room) {
+Savings brush_rack(Session& s, ToolDensity room) {
     Ui& ui = s.ui;
     const std::string chosen = ui.title(brush::sized_name(s.brush.preset).base);
     if (!ui.section("Brush", true, chosen.c_str())) return {};
     // By the rows of each way, or the panel would go to and fro between two that each seem to have room for the other.
     const std::vector<BrushFamily> families = s.brush.shelf.families(s.brush.presets);
-    const float named = rack_rows(s, families, ToolRoom::full, false),
-                tight = rack_rows(s, families, ToolRoom::tight, false);
+    const float named = rack_rows(s, families, ToolDensity::full, false),
+                tight = rack_rows(s, families, ToolDensity::tight, false);
     rack_rows(s, families, room, true);
     tried_row(s, ui.px(kTriedHeights[static_cast<int>(room)]));
     const float letters = 0.8f * ImGui::GetFontSize();

@@ -57,12 +57,12 @@ struct SwatchSize {
     }
 };
 
-SwatchSize swatch_size(const Ui& ui, ToolRoom room) {
+SwatchSize swatch_size(const Ui& ui, ToolDensity room) {
     SwatchSize size;
-    size.columns = room == ToolRoom::tight ? 6 : 4;
-    size.lines = room == ToolRoom::full ? 2 : room == ToolRoom::compact ? 1 : 0;
+    size.columns = room == ToolDensity::tight ? 6 : 4;
+    size.lines = room == ToolDensity::full ? 2 : room == ToolDensity::compact ? 1 : 0;
     size.letters = 0.70f * ImGui::GetFontSize();
-    size.radius = ui.px(room == ToolRoom::full ? 10.0f : 8.0f);
+    size.radius = ui.px(room == ToolDensity::full ? 10.0f : 8.0f);
     const float gap = ui.px(2);
     size.width = (ImGui::GetContentRegionAvail().x + gap) / static_cast<float>(size.columns) - gap;
     size.height = 2 * size.radius + ui.px(4) + static_cast<float>(size.lines) * size.letters;
@@ -139,9 +139,9 @@ void swatch_button(const InkParts& s, const Swatch& shown, const std::string& la
 }
 
 // Those with names, then in small those whose name says no more than their colour, such as all of a drawing's.
-Savings swatches(const InkParts& s, ToolRoom room) {
-    const SwatchSize size = swatch_size(s.ui, room), full = swatch_size(s.ui, ToolRoom::full),
-                     compact = swatch_size(s.ui, ToolRoom::compact), tight = swatch_size(s.ui, ToolRoom::tight),
+Savings swatches(const InkParts& s, ToolDensity room) {
+    const SwatchSize size = swatch_size(s.ui, room), full = swatch_size(s.ui, ToolDensity::full),
+                     compact = swatch_size(s.ui, ToolDensity::compact), tight = swatch_size(s.ui, ToolDensity::tight),
                      small = small_swatch_size(s.ui);
     const std::vector<Swatch> all = list_swatches(s);
     const auto n_named = static_cast<std::size_t>(std::ranges::find_if(all, is_colour) - all.begin());
@@ -251,7 +251,7 @@ void wet_row(const InkParts& s) {
 
 }  // namespace
 
-Savings ink_section(const InkParts& s, ToolRoom room) {
+Savings ink_section(const InkParts& s, ToolDensity room) {
     Ui& ui = s.ui;
     if (!ui.section("Ink", true, ui.tr(s.brush.ink.c_str()))) return {};
     const Savings saves = swatches(s, room);

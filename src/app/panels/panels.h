@@ -119,10 +119,10 @@ struct Savings {
     float compact = 0, tight = 0;
 };
 /// The brushes in their families, and a stroke of the chosen one.
-Savings brush_rack(Session& s, ToolRoom room);
+Savings brush_rack(Session& s, ToolDensity room);
 /// All brushes with a stroke of each, over the view, when shown.
 void brush_browser(Session& s);
-Savings ink_section(const InkParts& s, ToolRoom room);
+Savings ink_section(const InkParts& s, ToolDensity room);
 /// Chooses a colour by its hex code. Its match becomes the ink.
 void set_colour(Session& s, const std::string& hex);
 /// The colour window over the view, when shown.
@@ -169,8 +169,8 @@ struct SidePanel {
 void begin_side_panel(Ui& ui, const char* name, const SidePanel& panel);
 /// Handles at the view's edges that hide or show the panels.
 void panel_handles(Session& s);
-/// Returns the sRGB colour (ImU32) of a dry film of an ink, as thick as a full brush leaves it, on the substrate that
-/// the work is shown on: of an ink that a hex code names, that colour.
+/// Returns the sRGB colour (ImU32) of a dry film of an ink, as thick as a full brush leaves it, on the substrate shown.
+/// An ink named by a hex code has that colour.
 unsigned ink_colour(const ColourState& colours, const std::string& ink);
 unsigned ink_colour(const ColourState& colours, const ink::Ink& ink);
 /// Returns the colour of the ink that the next stroke deposits.

@@ -177,7 +177,7 @@ void begin_side_panel(Ui& ui, const char* name, const SidePanel& panel) {
 
 void tool_panel(Session& s, float top, float bottom, float left) {
     begin_side_panel(s.ui, "###tools", {left, top, bottom});
-    const ToolRoom room = s.panels.tool_room;
+    const ToolDensity room = s.panels.tool_room;
     Savings saves;
     const auto add = [&saves](const Savings& more) { saves.compact += more.compact, saves.tight += more.tight; };
     writing_section(s.ui, s.tools, s.dialogs.file);
@@ -190,10 +190,12 @@ void tool_panel(Session& s, float top, float bottom, float left) {
     if (brushes) symmetry_section(s.ui, s.tools.symmetry);
     section_section(s.ui, s.view.section);
     const float height = ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y, there = bottom - top;
-    const float full = height + (room == ToolRoom::compact ? saves.compact : room == ToolRoom::tight ? saves.tight : 0);
-    s.panels.tool_room = full <= there                   ? ToolRoom::full
-                         : full - saves.compact <= there ? ToolRoom::compact
-                                                         : ToolRoom::tight;
+    const float full = height + (room == ToolDensity::compact ? saves.compact
+                                 : room == ToolDensity::tight ? saves.tight
+                                                              : 0);
+    s.panels.tool_room = full <= there                   ? ToolDensity::full
+                         : full - saves.compact <= there ? ToolDensity::compact
+                                                         : ToolDensity::tight;
     ImGui::End();
 }
 

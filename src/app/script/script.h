@@ -70,7 +70,7 @@ class Script {
         ScriptPoint place;  ///< of the label to click or to move to
     };
     /// Requests to the player of the script.
-    struct Wanted {
+    struct PlayerRequests {
         std::string picture;
         bool loss = false;
         std::optional<std::pair<int, int>> size;
@@ -106,7 +106,7 @@ class Script {
     double clock_ = 0;           ///< seconds, of the last event generated
     Pace pace_;
     Wait wait_;
-    Wanted wanted_;
+    PlayerRequests wanted_;
     Event cursor_;
     unsigned held_ = 0;               ///< modifiers that are pressed
     std::optional<UiFuzzer> fuzzer_;  ///< while `random` plays

@@ -51,7 +51,7 @@ void store_read_copies(Session& s) {
     if (same == kept.end() && kept.size() >= io::kMostAttachments)
         return show_message(s.status,
                             "The project holds as many copied pictures as it can; this one is not kept in it.");
-    if (same == kept.end() || !same->says_the_same(*read->copy))
+    if (same == kept.end() || !same->has_same_content(*read->copy))
         s.paint_thread->post(AttachToProject{io::kCopies, std::move(read->attachment)});
     if (same == kept.end())
         kept.push_back(std::move(*read->copy));

@@ -38,9 +38,9 @@ struct ShelfBrush {
     std::optional<std::filesystem::file_time_type> written;  ///< when its file was; nothing: there is none
 };
 
-/// Reads each brush when it is first asked for, and files of the user again when they change, go or come back: those on
-/// a thread of its own, as a file of a disk in a network may take long to answer, or never does: a shelf that goes does
-/// not wait for it.
+/// Reads each brush when it is first asked for, and files of the user again when they change, go or come back. Those
+/// are read on a thread of its own: a disk in a network may take long to answer, or never does. The destructor does not
+/// wait for it.
 class BrushShelf {
   public:
     BrushShelf() = default;

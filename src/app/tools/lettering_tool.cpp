@@ -68,15 +68,15 @@ void LetteringTool::preview(const PlacingSpot& spot) {
     Session& s = session_;
     const Lettering& l = s.tools.lettering;
     show_place(s.tools, spot.at);
-    Shown now{.at = spot.at,
-              .normal = spot.normal,
-              .eye = spot.eye,
-              .camera = camera_of(s),
-              .section = section_plane(s.view, s.paint_thread->model().mesh->bounds),
-              .layout = l.text->layout,
-              .turn = l.turn,
-              .revision = l.revision,
-              .curve = l.curve.size()};
+    PreviewKey now{.at = spot.at,
+                   .normal = spot.normal,
+                   .eye = spot.eye,
+                   .camera = camera_of(s),
+                   .section = section_plane(s.view, s.paint_thread->model().mesh->bounds),
+                   .layout = l.text->layout,
+                   .turn = l.turn,
+                   .revision = l.revision,
+                   .curve = l.curve.size()};
     if (shown_ == now) return;
     s.tools.place.preview = preview_lines(s.paint_thread->surface(), l, place_at(spot));
     find_seen(s.tools.place.preview, s);

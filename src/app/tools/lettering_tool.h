@@ -26,7 +26,7 @@ class LetteringTool {
 
   private:
     /// What a preview depends on.
-    struct Shown {
+    struct PreviewKey {
         Vec3 at{0}, normal{0}, eye{0};
         render::GlCamera camera;
         Vec4f section{0};
@@ -34,7 +34,7 @@ class LetteringTool {
         double turn = 0;
         std::uint64_t revision = 0;
         std::size_t curve = 0;  ///< number of its points
-        bool operator==(const Shown&) const = default;
+        bool operator==(const PreviewKey&) const = default;
     };
     LetteringPlace place_at(const PlacingSpot& spot) const;
     void preview(const PlacingSpot& spot);
@@ -43,7 +43,7 @@ class LetteringTool {
     void follow_brush();
 
     Session& session_;
-    std::optional<Shown> shown_;
+    std::optional<PreviewKey> shown_;
     std::string preset_;  ///< chosen when the tool was last seen
 };
 

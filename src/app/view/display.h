@@ -18,11 +18,11 @@ class Display {
     virtual void poll(EventQueue& events, double wait) = 0;
     virtual void present() = 0;
     /// Returns a fault since the last call for the status bar; else "".
-    virtual Message take_trouble() { return {}; }
+    virtual Message take_fault() { return {}; }
     /// Returns false where nobody looks: then only frames whose pixels are read need to be drawn.
     virtual bool seen() const { return true; }
     virtual bool closed() const = 0;
-    virtual void stay_open() {}  ///< resets `closed`
+    virtual void cancel_close() {}  ///< resets `closed`
     /// Returns true when the graphics driver was reset and all its memory is lost.
     virtual bool lost() const;
     /// Creates a new OpenGL context, current on this thread, and destroys the old one.

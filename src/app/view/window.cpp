@@ -103,10 +103,10 @@ class Window : public Display {
         events.insert(events.end(), std::make_move_iterator(fresh_.begin()), std::make_move_iterator(fresh_.end()));
         show_cursor();
     }
-    Message take_trouble() override { return std::exchange(trouble_, {}); }
+    Message take_fault() override { return std::exchange(trouble_, {}); }
     void present() override { glfwSwapBuffers(window_); }
     bool closed() const override { return glfwWindowShouldClose(window_); }
-    void stay_open() override { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
+    void cancel_close() override { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
     void resize(int width, int height) override { glfwSetWindowSize(window_, width, height); }
     void set_title(const std::string& title) override { glfwSetWindowTitle(window_, title.c_str()); }
     int width() const override { return size().first; }
@@ -133,7 +133,7 @@ class Window : public Display {
         if (!space_mouse_) return;
         EventQueue events;
         space_mouse_->merge(events, last_poll_);
-        if (Message trouble = space_mouse_->take_trouble(); !trouble.empty()) trouble_ = std::move(trouble);
+        if (Message trouble = space_mouse_->take_fault(); !trouble.empty()) trouble_ = std::move(trouble);
         if (glfwGetWindowAttrib(window_, GLFW_FOCUSED)) fresh_.insert(fresh_.end(), events.begin(), events.end());
     }
     // Picture pixels per window coordinate.

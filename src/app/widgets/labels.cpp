@@ -12,7 +12,7 @@ bool is_inside_character(char c) {
 }
 
 // As much of the beginning as fits, with "..." and `tail` after it.
-std::string beginning(const std::string& text, const LabelRoom& room, const std::string& tail = "") {
+std::string beginning(const std::string& text, const LabelSpace& room, const std::string& tail = "") {
     if (tail.empty() && room.width_of(text) <= room.width) return text;
     std::size_t end = text.size();
     while (end > 0 && room.width_of(text.substr(0, end) + "..." + tail) > room.width) {
@@ -23,7 +23,7 @@ std::string beginning(const std::string& text, const LabelRoom& room, const std:
 }
 
 // As much of the end as fits, whole words where there are some.
-std::string ending(const std::string& text, const LabelRoom& room) {
+std::string ending(const std::string& text, const LabelSpace& room) {
     std::size_t begin = 0;
     while (begin < text.size() && room.width_of("..." + text.substr(begin)) > room.width) {
         do ++begin;
@@ -34,7 +34,7 @@ std::string ending(const std::string& text, const LabelRoom& room) {
 }
 
 // Words in lines, each as long as it can be; what is left goes into the last line.
-std::vector<std::string> broken(const std::string& name, const LabelRoom& room) {
+std::vector<std::string> broken(const std::string& name, const LabelSpace& room) {
     std::vector<std::string> lines;
     std::istringstream words(name);
     for (std::string word; words >> word;) {
@@ -56,7 +56,7 @@ std::string joined(const std::vector<std::string>& lines) {
 
 // `shorten` is done to the last line, and to each that is too wide.
 template <class Shorten>
-std::string label(const std::string& name, const LabelRoom& room, const Shorten& shorten) {
+std::string label(const std::string& name, const LabelSpace& room, const Shorten& shorten) {
     std::vector<std::string> lines = broken(name, room);
     for (std::size_t i = 0; i < lines.size(); ++i)
         lines[i] = i + 1 == lines.size() ? shorten(lines[i]) : beginning(lines[i], room);
@@ -65,7 +65,7 @@ std::string label(const std::string& name, const LabelRoom& room, const Shorten&
 
 }  // namespace
 
-std::vector<std::string> make_distinct(const std::vector<std::string>& names, const LabelRoom& room) {
+std::vector<std::string> make_distinct(const std::vector<std::string>& names, const LabelSpace& room) {
     std::vector<std::string> labels;
     std::map<std::string, std::set<std::string>> names_of;
     for (const std::string& name : names) {

@@ -110,7 +110,8 @@ class Mover {
         for (int side = 0; side < t.n_charts(); ++side) {
             const std::size_t n = cut_.charts[t.chart[side]].mesh.faces.size();
             const std::size_t come = t.n_charts() == 1 ? n : t.swept[1 - side].size();
-            most = std::max(most, n > kLargeChart ? double(n) / 4 + double(faces_anew(n, come)) : double(n + come));
+            most = std::max(most,
+                            n > kLargeChart ? double(n) / 4 + double(count_faces_around(n, come)) : double(n + come));
         }
         return most;
     }

@@ -171,13 +171,13 @@ std::vector<Vec2> unfold_uvs(const FlatChart& old, const ChartMesh& chart) {
     return uv;
 }
 
-std::size_t faces_anew(std::size_t n_faces, std::size_t n_come) {
+std::size_t count_faces_around(std::size_t n_faces, std::size_t n_come) {
     const std::size_t wanted = std::max(kAround * n_come, kLeastAround);
     return 2 * wanted > n_faces ? n_faces : wanted;
 }
 
 std::vector<std::uint32_t> faces_around(const ChartMesh& chart, std::span<const std::uint32_t> come) {
-    const std::size_t wanted = faces_anew(chart.faces.size(), come.size());
+    const std::size_t wanted = count_faces_around(chart.faces.size(), come.size());
     if (wanted == chart.faces.size()) return {};
     std::vector<std::uint8_t> seen(chart.faces.size(), 0);
     std::vector<std::uint32_t> faces;

@@ -29,6 +29,6 @@ std::vector<Vec2> unfold_uvs(const FlatChart& old, const ChartMesh& chart);
 std::vector<std::uint32_t> faces_around(const ChartMesh& chart, std::span<const std::uint32_t> come);
 
 /// Returns the number of these faces, or of all: of a chart of `n_faces` that took `n_come` triangles.
-std::size_t faces_anew(std::size_t n_faces, std::size_t n_come);
+std::size_t count_faces_around(std::size_t n_faces, std::size_t n_come);
 
 }  // namespace tuft::atlas

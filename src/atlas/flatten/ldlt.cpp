@@ -357,7 +357,7 @@ bool LdltFactor::compute(SymmetricMatrix matrix, std::span<const Vec2> at) {
 /// Eliminates the rows of fronts `first` to `last` − 1 from the right hand sides of later ones. What goes to rows from
 /// `end_row` on, which others change at the same time, is `passed` on.
 void LdltFactor::solve_down(std::uint32_t first, std::uint32_t last, std::uint32_t end_row,
-                            std::vector<Passed>& passed) {
+                            std::vector<RowUpdate>& passed) {
     std::vector<double> x(largest_stride_), y(largest_stride_);
     for (std::uint32_t s = first; s < last; ++s) {
         const Front& front = fronts_[s];
@@ -424,7 +424,7 @@ void LdltFactor::solve(std::span<Vec2> x) {
     std::uint32_t next = 0;
     for (std::size_t k = 0; k < subtrees_.size(); ++k) {
         solve_down(next, subtree_of(k), n_rows, passed_.back());
-        for (const Passed& p : passed_[k]) {
+        for (const RowUpdate& p : passed_[k]) {
             x_[p.row] += p.x;
             y_[p.row] += p.y;
         }

@@ -47,7 +47,7 @@ class LdltFactor {
     struct Rows;
     struct Stack;
     /// What a row gets from an earlier one of a subtree.
-    struct Passed {
+    struct RowUpdate {
         double x = 0, y = 0;
         std::uint32_t row = 0;
     };
@@ -58,7 +58,7 @@ class LdltFactor {
     void find_subtrees();
     bool factor_in_turn(const Rows& rows, std::uint32_t first, std::uint32_t last, Stack& stack);
     bool factor(const Rows& rows, std::uint32_t first, std::uint32_t last, Stack& stack);
-    void solve_down(std::uint32_t first, std::uint32_t last, std::uint32_t end_row, std::vector<Passed>& passed);
+    void solve_down(std::uint32_t first, std::uint32_t last, std::uint32_t end_row, std::vector<RowUpdate>& passed);
     void solve_up(std::uint32_t first, std::uint32_t last);
 
     std::vector<std::uint32_t> place_;   ///< row of L of each row of the matrix
@@ -71,7 +71,7 @@ class LdltFactor {
     std::vector<std::uint32_t> subtrees_;  ///< last fronts of those that threads share, ascending
     std::uint32_t largest_stride_ = 0;
     std::vector<double> x_, y_;
-    std::vector<std::vector<Passed>> passed_;
+    std::vector<std::vector<RowUpdate>> passed_;
 };
 
 }  // namespace tuft::atlas

@@ -49,9 +49,10 @@ struct FlatCheck {
 /// `gap`: see `crosses_itself`.
 FlatCheck check_flat(const ChartMesh& chart, std::span<const Vec2> uv, double gap = 0);
 
-/// Returns true when the chart's border crosses itself, or comes nearer than `gap` to a part of itself that is more
-/// than 16 gaps away along the border and twice as far on the surface. (A nearer part may be the other side of a
-/// slit.) Contact is no crossing. Parts less than `near` of the border's length apart along it are ignored.
+/// Returns true when the chart's border crosses itself, or two parts of it come nearer to each other than `gap`. Only
+/// parts count that are more than 16 gaps apart along the border and twice as far on the surface: nearer ones may be
+/// the two sides of a slit. Contact is no crossing. Parts less than `near` of the border's length apart along it are
+/// ignored.
 bool crosses_itself(const ChartMesh& chart, std::span<const Vec2> uv, double gap, double near = 0);
 
 }  // namespace tuft::atlas

@@ -130,9 +130,9 @@ void SeamPaths::mark_band(const std::vector<std::uint32_t>& chain, float reach, 
         for (const std::uint32_t h : *ends)
             if (!seam_[h]) offer_ends(h, 0);
     for (std::size_t step = 0; step <= step_of(reach); ++step) {
-        std::vector<PathSearch::Reached>& now = s.by_distance_[step];
+        std::vector<PathSearch::QueueEntry>& now = s.by_distance_[step];
         for (std::size_t i = 0; i < now.size(); ++i) {  // which grows
-            const PathSearch::Reached at = now[i];
+            const PathSearch::QueueEntry at = now[i];
             if (at.distance > s.at_[at.vertex].band) continue;
             around(at.half, [&](std::uint32_t h) { offer_ends(h, at.distance); });
         }

@@ -32,7 +32,7 @@ class PathSearch {
   private:
     friend class SeamPaths;
     static constexpr float kFar = std::numeric_limits<float>::infinity();
-    struct Reached {
+    struct QueueEntry {
         float distance;
         std::uint32_t vertex, half;  // one that leaves the vertex
     };
@@ -46,7 +46,7 @@ class PathSearch {
     std::vector<std::uint8_t> goal_;             // by half-edge
     std::vector<std::uint32_t> starts_, goals_;  // half-edges that leave them
     std::vector<std::uint32_t> marked_, touched_;
-    std::vector<std::vector<Reached>> by_distance_;  // of the band, steps of about an edge
+    std::vector<std::vector<QueueEntry>> by_distance_;  // of the band, steps of about an edge
 };
 
 /// Where the seams of a patch run, chain by chain. Corners are places where three or more
@@ -87,7 +87,7 @@ class SeamPaths {
   private:
     static constexpr float kFar = PathSearch::kFar;
     /// What a search asks of a half-edge together: those of a triangle lie in one or two lines of the cache.
-    struct Half {
+    struct HalfEdge {
         std::uint32_t twin = kNone, origin = 0;
         float length = 0;
         float weight = 0;  ///< of its edge
@@ -113,7 +113,7 @@ class SeamPaths {
     void set_seam(std::uint32_t h, bool on);
     void sweep(std::uint32_t start, std::uint32_t chart, std::vector<std::uint32_t>* swept);
 
-    std::vector<Half> half_;
+    std::vector<HalfEdge> half_;
     std::vector<std::uint8_t> seam_;
     std::vector<std::uint32_t> chart_;
     std::vector<std::uint32_t> degree_;          // of vertices, borders included

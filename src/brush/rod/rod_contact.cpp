@@ -96,7 +96,7 @@ Distance distance_of(const Obstacle& o, const Crease& crease, double edge, const
     return out;
 }
 
-bool all_clear(const Frozen& frozen, int k, const Evaluation& at) {
+bool is_clear(const Frozen& frozen, int k, const Evaluation& at) {
     const Law& law = *frozen.law;
     const int per = law.points_per_segment, n = frozen.rod->segments();
     if (per < 3 || law.hard) return false;

@@ -13,9 +13,9 @@ inline bool over_edge(const Frozen& frozen, int p) {
 /// Whether no piece of contact point p, which lies at x, can touch the edge or its wet film.
 bool is_clear_of_edge(const Frozen& frozen, int p, const Vec3& x);
 
-/// Adds the pieces of contact point p and returns their potential. Each piece of compliance k shortens by s along
-/// itself: it stands where E(s) = s²/(2 k) + contact(r − z(x + s i)) is stationary, i the direction to the root and s
-/// the largest such, where hair that comes from its root meets the surface. Without `derivatives` `out` does not
+/// Adds the pieces of contact point p and returns their potential. A piece of compliance k shortens by s along itself,
+/// the largest s at which E(s) = s²/(2 k) + contact(r − z(x + s i)) is stationary. i: direction to the root. Hair that
+/// comes from its root meets the surface there first. Without `derivatives` `out` does not
 /// change.
 double add_hair_at_edge(const Frozen& frozen, int p, bool derivatives, Evaluation& out);
 

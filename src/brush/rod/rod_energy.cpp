@@ -282,7 +282,7 @@ double add_contacts(const Frozen& frozen, bool derivatives, Evaluation& out) {
     for (int k = 0; k <= frozen.rod->segments(); ++k) {
         if (frozen.patch[k].flat) {
             value += add_patch(frozen, k, derivatives, out);
-        } else if (!all_clear(frozen, k, out)) {
+        } else if (!is_clear(frozen, k, out)) {
             const PointRange range = points_of(k, per, frozen.rod->segments());
             for (int p = range.begin; p < range.end; ++p) value += add_contact(frozen, p, derivatives, out);
         }

@@ -78,7 +78,7 @@ Obstacle met_by(const Frozen& frozen, int p, const Recycled<Vec3>& node);
 struct Evaluation;
 
 /// Returns true when all points of node k are out of reach of one plane.
-bool all_clear(const Frozen& frozen, int k, const Evaluation& at);
+bool is_clear(const Frozen& frozen, int k, const Evaluation& at);
 
 /// `compute_patches` finds the patches of the nodes. `turn_patches` sets their axes from the friction of their points.
 void compute_patches(Frozen& frozen);

@@ -123,7 +123,7 @@ std::vector<FerruleSpine> ferrule_spines(const Preset& p) {
     return out;
 }
 
-FerruleSpine whole_mouth(const Preset& p) {
+FerruleSpine single_spine(const Preset& p) {
     double area = 0;
     for (const FerruleSpine& spine : ferrule_spines(p)) area += spine.pitch * spine.thick;
     return {.pitch = p.width, .thick = area / p.width};

@@ -53,7 +53,7 @@ inline bool has_one_skin(const Preset& preset) {
 }
 
 /// Returns the strip that is the whole mouth of a wide ferrule.
-FerruleSpine whole_mouth(const Preset& preset);
+FerruleSpine single_spine(const Preset& preset);
 
 /// Returns the corners of a spine's part of the mouth, convex, anticlockwise, about the spine and over the semi-axes of
 /// its ellipse at rest; none for a disc. Error of its width in any direction: 0.5 %.

@@ -66,7 +66,7 @@ double unit_bend(const rod::Rod& rod) {
 }  // namespace
 
 void break_symmetry(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
-                    std::span<const ContactPlane> planes, const Upright& upright) {
+                    std::span<const ContactPlane> planes, const StraightHair& upright) {
     if (planes.empty()) return;
     const Vec3 axis = spine.memory.clamp.tangent;
     for (const Vec3& t : spine.memory.tangent) {
@@ -136,8 +136,8 @@ Spine make_spine(const Preset& p, const rod::Rod& rod, const rod::Clamp& clamp, 
     return spine;
 }
 
-Solved finish_spine(const SpineStep& step, Spine& spine, SolvedRod rod, const Neighbours& neighbours) {
-    Solved out{std::move(rod.result), {}};
+SolvedSpine finish_spine(const SpineStep& step, Spine& spine, SolvedRod rod, const Neighbours& neighbours) {
+    SolvedSpine out{std::move(rod.result), {}};
     const std::span<const rod::Obstacle> met = out.result.met.empty() ? rod.obstacles : out.result.met;
     SectionOutput sections = make_sections({step.preset, spine, out.result, met, rod.node, step.rotation, step.wetness,
                                             step.share, step.walls, neighbours, rod.along, rod.broad});
@@ -153,7 +153,7 @@ Solved finish_spine(const SpineStep& step, Spine& spine, SolvedRod rod, const Ne
     return out;
 }
 
-Solved solve_spine(const SpineStep& step, Spine& spine, const Passed& passed, const rod::Guess* guess) {
+SolvedSpine solve_spine(const SpineStep& step, Spine& spine, const PathWork& passed, const rod::Guess* guess) {
     const Preset& p = step.preset;
     const rod::Law law = law_of(p, step.wetness, step.share, step.dt);
     const Recycled<rod::Obstacle> obstacles = obstacles_of(p, spine, step.planes);
@@ -195,12 +195,12 @@ int count_substeps(const Preset& p, const Pose& from, const Pose& to, double ben
 namespace {
 
 /// Upright hair's end and where straight hair points at a pose.
-Upright upright_at(const Preset& p, const Pose& pose) {
+StraightHair upright_at(const Preset& p, const Pose& pose) {
     return {.tip = pose.position + p.length * pose.axis()};
 }
 
 /// Moves the spine to just before the last of `parts` parts of the motion. Returns the pose where that part begins.
-Pose follow_parts(const SpineStep& step, Spine& spine, const Pose& from, const Pose& to, int parts, Passed& passed) {
+Pose follow_parts(const SpineStep& step, Spine& spine, const Pose& from, const Pose& to, int parts, PathWork& passed) {
     const Preset& p = step.preset;
     rod::Law law = law_of(p, step.wetness, 1, 0);
     law.max_iterations = std::max(30, law.max_iterations / parts);
@@ -227,9 +227,9 @@ Pose follow_parts(const SpineStep& step, Spine& spine, const Pose& from, const P
 
 }  // namespace
 
-Passed follow_ferrule(SpineStep& step, Spine& spine, const Pose& from, const Pose& to, StepStart* start) {
+PathWork follow_ferrule(SpineStep& step, Spine& spine, const Pose& from, const Pose& to, StepStart* start) {
     const Preset& p = step.preset;
-    Passed passed;
+    PathWork passed;
     if (step.planes.empty()) return passed;
     Pose last = from;
     if (start && start->known && start->in_parts) {
@@ -301,7 +301,7 @@ void add_reaction(const Spine& spine, const Recycled<rod::Obstacle>& obstacles, 
 
 }  // namespace
 
-Solved bend_by_table(const SpineStep& step, const QueryTable& table, Spine& spine) {
+SolvedSpine bend_by_table(const SpineStep& step, const QueryTable& table, Spine& spine) {
     const Preset& p = step.preset;
     const rod::Clamp& clamp = step.clamp;
     const rod::Law law = law_of(p, step.wetness, 1, 0);

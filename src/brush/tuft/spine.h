@@ -10,7 +10,7 @@
 namespace tuft::brush {
 
 /// One spine after a solve.
-struct Solved {
+struct SolvedSpine {
     rod::Result result;  ///< in units of L and B0
     Branch branch;
     double spread_energy = 0;  ///< J, in the springs of the side nodes; part of the rod's energy
@@ -18,7 +18,7 @@ struct Solved {
 };
 
 /// Dissipation and slip on the path to a pose, in units of L and B0.
-struct Passed {
+struct PathWork {
     SolverWork work;
     double dissipation = 0;
     Recycled<Vec3> slip;  ///< [n+1] as in rod::Result; or none
@@ -43,14 +43,14 @@ int count_substeps(const Preset& preset, const Pose& from, const Pose& to, doubl
 Pose between(const Pose& from, const Pose& to, double t);
 
 /// Where the tip of straight hair would be, and where hair falls that nothing else turns aside.
-struct Upright {
+struct StraightHair {
     Vec3 tip{0};          ///< metres, world
     Vec3 aside{1, 0, 0};  ///< unit, ferrule frame
     Vec3 taken{0};        ///< unit, world: where it falls in any case; zero: nothing says so
 };
 /// Bends nearly straight hair that is pressed along its axis a little: behind the hand's motion, or to `aside`.
 void break_symmetry(const Preset& preset, Spine& spine, const Pose& from, const Pose& to,
-                    std::span<const ContactPlane> planes, const Upright& upright);
+                    std::span<const ContactPlane> planes, const StraightHair& upright);
 
 /// What one spine meets in a step.
 struct SpineStep {
@@ -75,7 +75,7 @@ struct SolvedRod {
 };
 
 /// Makes the sections of a solved spine.
-Solved finish_spine(const SpineStep& step, Spine& spine, SolvedRod rod, const Neighbours& neighbours = {});
+SolvedSpine finish_spine(const SpineStep& step, Spine& spine, SolvedRod rod, const Neighbours& neighbours = {});
 
 /// Returns a straight spine with its root at ξ0 of the hair and `share` of the hair.
 Spine make_spine(const Preset& preset, const rod::Rod& rod, const rod::Clamp& clamp, double xi0, double share);
@@ -83,14 +83,15 @@ Spine make_spine(const Preset& preset, const rod::Rod& rod, const rod::Clamp& cl
 /// Moves the spine from pose `from` to just before `to` in small steps, and turns upright hair behind the motion.
 /// `step.dt`: on entry seconds of the whole motion, on return seconds of the remaining part. `start` as in
 /// `brush::step`.
-Passed follow_ferrule(SpineStep& step, Spine& spine, const Pose& from, const Pose& to, StepStart* start = nullptr);
+PathWork follow_ferrule(SpineStep& step, Spine& spine, const Pose& from, const Pose& to, StepStart* start = nullptr);
 
 /// Solves the spine with the rod solver. Adds `passed`, the earlier part of this step, to the result.
-Solved solve_spine(const SpineStep& step, Spine& spine, const Passed& passed = {}, const rod::Guess* guess = nullptr);
+SolvedSpine solve_spine(const SpineStep& step, Spine& spine, const PathWork& passed = {},
+                        const rod::Guess* guess = nullptr);
 
 /// Solves the spine with the query table. It is bent in the plane of the holder and the tip's last position, so
 /// that the tip follows the hand as a tractrix, by the moment that places the tip on the plane.
-Solved bend_by_table(const SpineStep& step, const QueryTable& table, Spine& spine);
+SolvedSpine bend_by_table(const SpineStep& step, const QueryTable& table, Spine& spine);
 
 /// Returns SP = ξ k (1 − Z_i/Z) of the bifurcation rule. k is the root moment over that of a tuft lying flat.
 double split_measure(const Preset& preset, double ink_left, double root_moment);

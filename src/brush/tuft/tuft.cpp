@@ -52,7 +52,7 @@ bool reaches(const TuftState& state, std::span<const ContactPlane> planes) {
 /// those of a strip are of an ellipse of its area.
 void fill_mouth(const Preset& p, TuftState& state) {
     if (!has_one_skin(p)) return;
-    const FerruleSpine mouth = whole_mouth(p);
+    const FerruleSpine mouth = single_spine(p);
     const double root_pi = std::sqrt(std::numbers::pi);
     state.wide = state.strips = true;
     for (Branch& branch : state.branches) {
@@ -146,7 +146,7 @@ rod::Clamp clamp_in(const Tuft& tuft, const Spine& spine, const Pose& pose) {
 }
 
 /// Adds what the surface does to one spine, and its branch. `lever`: of its root from the middle of the mouth, metres.
-void add_spine(const Preset& p, const Spine& spine, Solved solved, const Vec3& lever, TuftState& state) {
+void add_spine(const Preset& p, const Spine& spine, SolvedSpine solved, const Vec3& lever, TuftState& state) {
     const rod::Result& r = solved.result;
     const double newton = p.stiffness / (p.length * p.length), newton_metre = p.stiffness / p.length;
     state.force += r.force * newton;
@@ -195,9 +195,9 @@ TuftState bend_trunk(Tuft& tuft, const Pose& pose, std::span<const ContactPlane>
         step.walls = walls.first(2 * own);
         step.across = walls.subspan(2 * own);
     }
-    Passed passed;
+    PathWork passed;
     if (p.spine == SpineMethod::rod) passed = follow_ferrule(step, tuft.trunk(), tuft.pose, pose, start);
-    Solved solved =
+    SolvedSpine solved =
         p.spine == SpineMethod::table
             ? bend_by_table(step, tuft.table, tuft.trunk())
             : solve_spine(step, tuft.trunk(), passed, start && start->known ? &start->guess.front() : nullptr);

@@ -108,14 +108,14 @@ void solve_sub_spines(Tuft& tuft, std::span<const ContactPlane> planes, TuftStat
         const Section& trunk = whole[whole.size() - 1 - static_cast<std::size_t>(k)];
         const double part = 1 / std::sqrt(static_cast<double>(count_all));
         sub_spine.root_width = part * trunk.a;
-        Solved solved = solve_spine({.preset = p,
-                                     .clamp = clamp,
-                                     .rotation = tuft.pose.rotation,
-                                     .planes = own,
-                                     .wetness = tuft.wetness,
-                                     .share = static_cast<double>(count_all),
-                                     .dt = dt},
-                                    sub_spine);
+        SolvedSpine solved = solve_spine({.preset = p,
+                                          .clamp = clamp,
+                                          .rotation = tuft.pose.rotation,
+                                          .planes = own,
+                                          .wetness = tuft.wetness,
+                                          .share = static_cast<double>(count_all),
+                                          .dt = dt},
+                                         sub_spine);
         state.iterations += solved.result.iterations;
         state.work += solved.result.work;
         state.converged = state.converged && solved.result.converged;

@@ -45,7 +45,7 @@ double rest_reach(const Spine& spine, std::size_t i, const Vec3& x, const Vec3& 
 
 /// All spines of a ferrule after a solve.
 struct SolvedSpines {
-    Recycled<Solved> spines;
+    Recycled<SolvedSpine> spines;
     SolverWork work;
     double coupling_energy = 0, dissipation = 0;  ///< units of B0/L; the latter of all rods and pairs
     double film_range = 0;                        ///< m, gap at which the wet film between two spines breaks

@@ -265,7 +265,7 @@ MeshFacts mesh_facts(const Inspect& a, const ProgressFn& progress) {
     mesh::RepairOptions options;
     const auto fixed = io::metres_per_unit_of(a.file);
     options.metres_per_unit = fixed.value_or(metres_per(a.unit.empty() ? guess.unit : a.unit).value_or(kMillimetre));
-    options.y_up = a.up == "y" && !io::fixes_up(a.file);
+    options.y_up = a.up == "y" && !io::has_fixed_up_axis(a.file);
     if (!a.sides.empty()) options.sides = mesh::open_sides_of(a.sides);
     options.progress = progress;
     mesh::Surface surface;

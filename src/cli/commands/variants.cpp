@@ -271,14 +271,15 @@ int run(const RunTask& a) {
     variants::ContentHashes known;
     std::string fault;
     for (auto i = static_cast<std::size_t>(a.index); i < end; ++i) {
-        const variants::Ran ran = variants::run_task(jobs, i, paint, known);
-        if (ran == variants::Ran::failed && fault.empty()) fault = fmt::format("task {}: {}", i, jobs.failure(i));
+        const variants::TaskResult ran = variants::run_task(jobs, i, paint, known);
+        if (ran == variants::TaskResult::failed && fault.empty())
+            fault = fmt::format("task {}: {}", i, jobs.failure(i));
         if (!a.common.quiet)
             fmt::print("task {}: {}\n", i,
-                       ran == variants::Ran::painted       ? "painted"
-                       : ran == variants::Ran::done_before ? "was done before"
-                       : ran == variants::Ran::taken       ? "another process has it"
-                                                           : "failed");
+                       ran == variants::TaskResult::painted       ? "painted"
+                       : ran == variants::TaskResult::done_before ? "was done before"
+                       : ran == variants::TaskResult::taken       ? "another process has it"
+                                                                  : "failed");
     }
     if (!fault.empty()) throw Error(fault);
     return 0;

@@ -19,7 +19,7 @@ int slowest_stop(const DeviceWork& a, const Places& places) {
     const brush::Tuft tuft = brush::make_tuft(brush_in_hand(a, a.brush));
     const auto path = haptic::hand_path(haptic::HandMotion::rest, places.place[0], tuft.preset);
     int slowest = 0;
-    for (const haptic::Trouble trouble : haptic::kTroubles) {
+    for (const haptic::TrialFault trouble : haptic::kTrialFaults) {
         const int periods =
             haptic::periods_to_stop(tuft, *places.surface[0], path, trial_options(a, tuft.preset), trouble, 2.5);
         if (periods < 0) throw Error("the force of the simulated arm does not end");

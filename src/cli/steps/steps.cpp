@@ -83,7 +83,7 @@ Read read_file(const fs::path& path, const FileReading& how, mesh::RepairOptions
         read.frame.unit = guess.unit;
     }
     repair.metres_per_unit = fixed.value_or(metres_per(read.frame.unit).value_or(kMillimetre));
-    repair.y_up = read.frame.y_up && !io::fixes_up(path);  // the reader has turned it
+    repair.y_up = read.frame.y_up && !io::has_fixed_up_axis(path);  // the reader has turned it
     if (!how.sides.empty()) repair.sides = mesh::open_sides_of(how.sides);
     return read;
 }

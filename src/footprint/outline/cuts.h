@@ -129,13 +129,13 @@ void spread_trails(Recycled<Trail>& trails, HairTracks& tracks, const SpreadOpti
 void gather_trails(Recycled<Trail>& trails, double part);
 
 /// Spreads the sections of spines of a row as far as midway to their neighbours, flat on the surface and at constant
-/// area: hair that is set between two spines lies between them, X = (F_k + F_{k+1}) / 2 at its edge, at equal parts of
-/// what touches. A section turned by half a turn is spread as the same hair is. A row that stands aslant to its hair so
-/// keeps one edge. To three times their width at most. Spines that differ in length widen only, along their own broad
-/// sides. Along the hair the ends of the strips lie on the quadratic B-spline of the spines: from midway
-/// to midway, M₋, F_k, M₊ the control points of each, so that the toe of a filbert is one smooth curve. At the free
-/// edge of an outermost strip of a toe the hair ends earlier, by `Trail::edge_short`; where less than that touches, the
-/// edge is still in the air.
+/// area. Hair that is set between two spines lies between them: its edge is at X = (F_k + F_{k+1}) / 2, taken at equal
+/// parts of what touches. A section turned by half a turn is spread as the same hair is. A row that stands aslant to
+/// its hair so keeps one edge. To three times their width at most. Spines that differ in length widen only, along their
+/// own broad sides. Along the hair the ends of the strips lie on the quadratic B-spline of the spines: from midway to
+/// midway, M₋, F_k, M₊ the control points of each, so that the toe of a filbert is one smooth curve. At
+/// the free edge of an outermost strip of a toe the hair ends earlier, by `Trail::edge_short`. Where less than that
+/// touches, the edge is still in the air.
 void fill_rows(Recycled<Trail>& trails);
 
 /// Adds the upright hair round the foot of the axis, by `foot.share`: a straight taper from the widest section to
@@ -146,10 +146,10 @@ void cover_upright_hair(Recycled<Trail>& trails, const brush::UprightHair& foot,
 /// Returns the outline of a trail; without points when the trail is too small.
 Outline outline_of(const Trail& trail, int points);
 
-/// Returns the outlines whose union is the contact patch: one for each trail, and where spines of a ferrule are joined
-/// by ink, one for what lies between two of them, or in a ring between three, at equal parts of their hair; of a row
-/// also one over the heels of all that are joined. `before`:
-/// of `leapt_trails`; what leapt also has an outline of all that it passed over.
+/// Returns the outlines whose union is the contact patch, one for each trail. Where ink joins spines of a ferrule,
+/// there is also one for what lies between two of them (in a ring: three), at equal parts of their hair. A row has one
+/// more, over the heels of all that are joined. `before`: of `leapt_trails`; what leapt has an outline of all that it
+/// passed over.
 Recycled<Outline> outlines_of(std::span<const Trail> trails, int points, std::span<const Trail> before = {});
 
 /// Returns the trails of the pose before in the frame of `trails`, where a patch leapt: from pose to pose, apart from

@@ -99,7 +99,7 @@ void list_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint,
         if (jobs.mapping == Mapping::log) {
             const Cover cover = scratch.discs.cover(k);
             if (cover == Cover::empty) continue;
-            if (cover == Cover::full && surely_faces(cluster, normal)) {
+            if (cover == Cover::full && is_facing(cluster, normal)) {
                 f.full_quadrants = kAllQuadrants;
                 f.partial_quadrants = 0;
             }
@@ -180,7 +180,7 @@ void classify_clusters(const Surface& surface, const Footprint& footprint, const
             const ClusterFrame& f = jobs.frames[k];
             const std::uint32_t i = scratch.reached[k];
             if (f.partial_quadrants == 0 || f.first_row > 0 || f.last_row + 1 < atlas::kTile) continue;
-            if (!surely_faces(surface.clusters.clusters[i], normal) || (either && !scratch.nodes[i].lit)) continue;
+            if (!is_facing(surface.clusters.clusters[i], normal) || (either && !scratch.nodes[i].lit)) continue;
             if (add_quadrants(own ? f : jobs.stamp_frame, f.cluster, surface.texels, job.slot, displacement,
                               scratch.discs))
                 scratch.queried.push_back(k);

@@ -307,7 +307,7 @@ struct Walk {
 
     bool is_smooth(const atlas::TexelCluster& cluster, const PlanScratch::Node& n) const {
         return n.state == kFinal && occluded == 0 && n.lit && cluster.outward == Vec3f{0} &&
-               surely_faces(cluster, reach.normal) && disagreement(smooth->frame, cluster, n) <= smooth->most_off;
+               is_facing(cluster, reach.normal) && disagreement(smooth->frame, cluster, n) <= smooth->most_off;
     }
 
     /// Dijkstra over the clusters by distance from the stamp's origin; leaves those that the
@@ -392,7 +392,7 @@ double disagreement(const Frame& frame, const atlas::TexelCluster& cluster, cons
     return glm::length(atlas::log_map(frame, Vec3(cluster.centre), Vec3(cluster.normal)) - Vec2(n.u, n.v));
 }
 
-bool surely_faces(const atlas::TexelCluster& cluster, const Vec3f& normal) {
+bool is_facing(const atlas::TexelCluster& cluster, const Vec3f& normal) {
     return cluster.cone_cos > kSureCos && glm::dot(cluster.normal, normal) > kSureNormal;
 }
 

@@ -57,8 +57,8 @@ PlanScratch::Node& node_of(PlanScratch& scratch, std::uint32_t cluster);
 PlanScratch::Node& place_start(PlanScratch& scratch, const Start& start);
 /// Distance between where the log map of `frame` and the walk put a cluster's centre, metres.
 double disagreement(const Frame& frame, const atlas::TexelCluster& cluster, const PlanScratch::Node& n);
-/// `surely_faces`: no texel of the cluster faces away from `normal`, nor from one that is one degree off.
-bool surely_faces(const atlas::TexelCluster& cluster, const Vec3f& normal);
+/// `is_facing`: no texel of the cluster faces away from `normal`, nor from one that is one degree off.
+bool is_facing(const atlas::TexelCluster& cluster, const Vec3f& normal);
 /// `faces_away`: the cluster is never inked. `in_picture`: the cluster's disc intersects the picture.
 bool faces_away(const Reach& reach, const atlas::TexelCluster& cluster);
 bool in_picture(const Reach& reach, const atlas::TexelCluster& cluster, const PlanScratch::Node& n);

@@ -27,7 +27,7 @@ SimulatedArm::SimulatedArm(const DeviceLimits& limits, HandPath path, const Simu
 
 void SimulatedArm::take_commands(double time) {
     while (n_taken_ < n_sent_ && sent_[n_taken_ % sent_.size()].arrives <= time) {
-        const Sent& s = sent_[n_taken_++ % sent_.size()];
+        const DelayedForce& s = sent_[n_taken_++ % sent_.size()];
         const double size = glm::length(s.force);
         force_ = size > limits_.max_force ? s.force * (limits_.max_force / size) : s.force;
         heard_ = s.arrives;

@@ -70,7 +70,7 @@ class SimulatedArm {
 
   private:
     static constexpr double kStep = 1e-4;  // s
-    struct Sent {
+    struct DelayedForce {
         double arrives = -1;
         Vec3 force{0};
     };
@@ -85,7 +85,7 @@ class SimulatedArm {
     std::uint64_t steps_ = 0;
     Vec3 position_{0}, velocity_{0}, force_{0};
     double heard_ = -1;
-    std::array<Sent, 64> sent_;
+    std::array<DelayedForce, 64> sent_;
     std::size_t n_sent_ = 0, n_taken_ = 0;
     Random random_;
     ArmEnergy energy_;

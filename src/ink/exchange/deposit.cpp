@@ -201,7 +201,7 @@ void TileDeposit::add(std::span<const float, kN> coverage, const DepositParams& 
         return even;
     }();
     const float* tone = (tone_.empty() ? std::span<const float>(kEven) : tone_).data() + begin;
-    const Covered rows{begin, end, &coverage[begin], tone};
+    const CoveredRows rows{begin, end, &coverage[begin], tone};
     const auto planes = canvas_.open_planes(slot_);
     const int only = only_pigment(params.mix);
     if (only >= 0 && planes[only] != nullptr && std::count(planes.begin(), planes.end(), nullptr) == kMaxPigments - 1)
@@ -210,7 +210,7 @@ void TileDeposit::add(std::span<const float, kN> coverage, const DepositParams& 
         add_among_others(rows, params, law);
 }
 
-void TileDeposit::add_alone(int pigment, const Covered& rows, const DepositParams& params, const DepositLaw& law) {
+void TileDeposit::add_alone(int pigment, const CoveredRows& rows, const DepositParams& params, const DepositLaw& law) {
     if (!(params.target > 0) || !(law.rate > 0)) return;
     Plane& plane = *canvas_.open_planes(slot_)[pigment];
     if (alone_ != pigment || alone_part_ != params.mix[pigment]) {
@@ -238,7 +238,7 @@ double TileDeposit::finish() {
     return given_;
 }
 
-void TileDeposit::add_among_others(const Covered& rows, const DepositParams& params, const DepositLaw& law) {
+void TileDeposit::add_among_others(const CoveredRows& rows, const DepositParams& params, const DepositLaw& law) {
     const auto [begin, end, coverage, tone] = rows;
     sum_alone();
     const int n = end - begin;

@@ -26,13 +26,13 @@ class TileDeposit {
 
   private:
     /// The rows of the tile that a stamp covers: texels `begin` to `end`.
-    struct Covered {
+    struct CoveredRows {
         int begin = 0, end = 0;
         const float *coverage = nullptr, *tone = nullptr;  ///< [end − begin]
     };
 
-    void add_alone(int pigment, const Covered& rows, const DepositParams& params, const DepositLaw& law);
-    void add_among_others(const Covered& rows, const DepositParams& params, const DepositLaw& law);
+    void add_alone(int pigment, const CoveredRows& rows, const DepositParams& params, const DepositLaw& law);
+    void add_among_others(const CoveredRows& rows, const DepositParams& params, const DepositLaw& law);
     void sum_alone();
 
     Canvas& canvas_;

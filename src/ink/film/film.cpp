@@ -187,11 +187,11 @@ struct WetFilm::State : TileList {
     }
 
     /// On relief the liquid's own surface levels, and not its depth.
-    Beside beside(const Active& tile, const Near& near) const {
+    TileNeighbours beside(const Active& tile, const Near& near) const {
         const auto blocks = [](const Active& a, const Sources& s) {
             return s.relief ? std::uint16_t{0} : a.faces.geometry->blocks;
         };
-        Beside out{.here = blocks(tile, *near[4])};
+        TileNeighbours out{.here = blocks(tile, *near[4])};
         constexpr std::array kSides{3, 5, 1, 7};
         for (std::size_t i = 0; i < 4; ++i) {
             const Sources& from = *near[kSides[i]];
@@ -317,7 +317,7 @@ struct WetFilm::State : TileList {
         planes_of(static_cast<std::uint32_t>(index), 0, sizeof(Plane));
         for (const int above : {7, 8})
             planes_of(tile.around[above], 0, 64);  // the row below was read before, and is at hand
-        for (const Beyond& other : tile.seams.others)
+        for (const SeamNeighbour& other : tile.seams.others)
             for (unsigned lines = other.lines; lines && other.place != kNone; lines &= lines - 1) {
                 const std::size_t line = 64 * static_cast<std::size_t>(std::countr_zero(lines));
                 planes_of(other.place, line, line + 64);
@@ -392,7 +392,8 @@ struct WetFilm::State : TileList {
             list[i].idle = true;
         }
         for (const std::uint32_t i : part_order)
-            each_read(i, [&](std::uint32_t read) { set(read, readers[read].load(std::memory_order_relaxed) + 1); });
+            for_each_read_tile(
+                i, [&](std::uint32_t read) { set(read, readers[read].load(std::memory_order_relaxed) + 1); });
         return part_order;
     }
 
@@ -411,11 +412,11 @@ struct WetFilm::State : TileList {
                 else
                     worker->ahead.clear();
                 if (i + 4 < end) look_far_ahead(tiles[i + 4]);
-                each_read(tiles[i], [&](std::uint32_t read) {
+                for_each_read_tile(tiles[i], [&](std::uint32_t read) {
                     if (readers[read].load(std::memory_order_relaxed) == 1) canvas.expect(list[read].slot);
                 });
                 compute(tiles[i], pigments, rates, number, *worker);
-                each_read(tiles[i], [&](std::uint32_t read) {
+                for_each_read_tile(tiles[i], [&](std::uint32_t read) {
                     if (last_reader(readers[read], alone))
                         commit(canvas, read, static_cast<float>(params.drying.stain), worker->spare);
                 });
@@ -454,7 +455,7 @@ struct WetFilm::State : TileList {
         for (double left = seconds; left > 0;) {
             const double dt = left / std::ceil(left / level_steps.seconds * (1 - 1e-9));
             if (sources.empty()) prepare(canvas);
-            const Tension::Solved solved = tension.solve(*this, sources, dt);
+            const Tension::TensionResult solved = tension.solve(*this, sources, dt);
             level_steps.in_work = true;
             step(canvas, params, rates, report.steps | ++n << 48, report);
             level_steps.in_work = false;
@@ -491,7 +492,7 @@ struct WetFilm::State : TileList {
         }
     }
 
-    void step_in_parts(Canvas& canvas, const FilmParams& params, const Chosen& chosen, FilmReport& report,
+    void step_in_parts(Canvas& canvas, const FilmParams& params, const StepChoice& chosen, FilmReport& report,
                        const BeforeFn& before) {
         const std::uint64_t number = report.steps++;
         const auto inside = [&](int first, int last) {
@@ -538,7 +539,7 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
             throw Cancelled();
         }
         if (s.sources.empty()) s.prepare(canvas);
-        Chosen chosen = choose_step(params, s, s.map.texel_size, s.any_relief, running, left);
+        StepChoice chosen = choose_step(params, s, s.map.texel_size, s.any_relief, running, left);
         const double dt = chosen.dt;
         left = dt < left * (1 - 1e-9) ? left - dt : 0;
         rippled += dt;

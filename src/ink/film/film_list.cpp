@@ -93,7 +93,7 @@ void TileList::find_near() {
             const auto row = static_cast<std::uint16_t>(1u << texel / kSide);
             const auto begin = over_seams_.tiles.begin() + static_cast<std::ptrdiff_t>(first);
             const auto at = std::lower_bound(begin, over_seams_.tiles.end(), other,
-                                             [](const Beyond& b, std::uint32_t s) { return b.slot < s; });
+                                             [](const SeamNeighbour& b, std::uint32_t s) { return b.slot < s; });
             if (at == over_seams_.tiles.end() || at->slot != other)
                 over_seams_.tiles.insert(at, {other, kNone, linked, row});
             else
@@ -105,7 +105,7 @@ void TileList::find_near() {
         const auto begin = over_seams_.tiles.begin() + static_cast<std::ptrdiff_t>(first);
         for (const atlas::SeamLink& l : links_of(slot)) {
             const auto at = std::lower_bound(begin, over_seams_.tiles.end(), l.other_slot,
-                                             [](const Beyond& b, std::uint32_t s) { return b.slot < s; });
+                                             [](const SeamNeighbour& b, std::uint32_t s) { return b.slot < s; });
             over_seams_.of_link.push_back(static_cast<std::uint16_t>(at - begin));
         }
         over_seams_.start.push_back(static_cast<std::uint32_t>(over_seams_.tiles.size()));
@@ -267,7 +267,7 @@ void TileList::find_neighbours() {
     std::size_t from = 0;
     for (Active& tile : list) {
         const std::size_t n = over_seams_.start[tile.slot + 1] - over_seams_.start[tile.slot];
-        tile.seams.others = std::span<const Beyond>(others_).subspan(from, n);
+        tile.seams.others = std::span<const SeamNeighbour>(others_).subspan(from, n);
         from += n;
     }
 }
@@ -303,7 +303,7 @@ void TileList::spread() {
     for (const Active& tile : list) scratch_.place[tile.slot] = kNone;
     readers = std::make_unique<std::atomic<std::uint32_t>[]>(list.size());
     n_readers.assign(list.size(), 0);
-    for (std::size_t i = 0; i < list.size(); ++i) each_read(i, [&](std::uint32_t read) { ++n_readers[read]; });
+    for (std::size_t i = 0; i < list.size(); ++i) for_each_read_tile(i, [&](std::uint32_t read) { ++n_readers[read]; });
     put_in_order();
 }
 
@@ -335,7 +335,7 @@ bool TileList::changed() {
                 more = more || (tile.absent >> i & 1);
         });
         if (!tile.seams.wet) continue;
-        for (const Beyond& other : tile.seams.others) {
+        for (const SeamNeighbour& other : tile.seams.others) {
             if (!other.linked) continue;
             if (other.place != kNone)
                 scratch_.wanted[other.place] = 1;

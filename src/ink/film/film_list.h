@@ -37,7 +37,7 @@ struct Ripples {
 };
 
 /// A tile on the other side of a seam.
-struct Beyond {
+struct SeamNeighbour {
     std::uint32_t slot = kNone;
     std::uint32_t place = kNone;  ///< in the list
     bool linked = false;          ///< liquid flows there; otherwise only slopes are read
@@ -46,7 +46,7 @@ struct Beyond {
 
 /// Seams of a tile in the list.
 struct ActiveSeams {
-    std::span<const Beyond> others;  ///< ascending slots
+    std::span<const SeamNeighbour> others;  ///< ascending slots
     std::span<const atlas::SeamLink> links;
     std::span<const std::uint16_t> link_others;  ///< of the links: places in `others`
     std::span<const float> link_areas;           ///< of the links: area over the mean that each may empty
@@ -126,10 +126,10 @@ struct TileList {
 
     /// Calls fn with every place in the list whose planes a tile reads, its own among them.
     template <class Fn>
-    void each_read(std::size_t index, Fn&& fn) const {
+    void for_each_read_tile(std::size_t index, Fn&& fn) const {
         for (const std::uint32_t i : list[index].around)
             if (i != kNone) fn(i);
-        for (const Beyond& other : list[index].seams.others)
+        for (const SeamNeighbour& other : list[index].seams.others)
             if (other.place != kNone) fn(other.place);
     }
 
@@ -142,7 +142,7 @@ struct TileList {
     /// Tiles over seams.
     struct OverSeams {
         std::vector<std::uint32_t> start;    ///< [n_slots + 1]
-        std::vector<Beyond> tiles;           ///< by slot; places unknown
+        std::vector<SeamNeighbour> tiles;    ///< by slot; places unknown
         std::vector<std::uint16_t> of_link;  ///< of the links: which of the slot's `tiles`
     };
     struct Scratch {
@@ -154,9 +154,9 @@ struct TileList {
     Unlimited unlimited_;
     FlowMedium medium_;
     OverSeams over_seams_;
-    std::vector<float> link_areas_;     ///< of the links
-    std::vector<Beyond> others_;        ///< of the list
-    std::vector<std::uint8_t> beside_;  ///< [n_slots]
+    std::vector<float> link_areas_;      ///< of the links
+    std::vector<SeamNeighbour> others_;  ///< of the list
+    std::vector<std::uint8_t> beside_;   ///< [n_slots]
     Scratch scratch_;
 
     void find_near();

@@ -7,9 +7,9 @@ namespace tuft::ink::wet {
 namespace {
 
 /// Of a tile's `others`.
-const Beyond* other_of(const Active& tile, std::uint32_t slot) {
+const SeamNeighbour* other_of(const Active& tile, std::uint32_t slot) {
     return &*std::lower_bound(tile.seams.others.begin(), tile.seams.others.end(), slot,
-                              [](const Beyond& b, std::uint32_t s) { return b.slot < s; });
+                              [](const SeamNeighbour& b, std::uint32_t s) { return b.slot < s; });
 }
 
 /// On a texel of a tile in the list, or of none.
@@ -23,7 +23,7 @@ void slopes_over_seams(const SeamTile& at_seam, const Step& step, Work& work) {
     const auto& [tiles, sources, part, index] = at_seam;
     const Active& tile = tiles.list[index];
     const Geometry& g = tiles.faces_of(tile.slot, part);
-    const Beyond* other = tile.seams.others.data();
+    const SeamNeighbour* other = tile.seams.others.data();
     work.sloping = true;
     for (std::size_t i = 0; i < tile.seams.taps.size();) {
         const std::uint8_t texel = tile.seams.taps[i].texel;

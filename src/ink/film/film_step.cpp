@@ -50,8 +50,8 @@ Step part_of(const Step& step, int parts, double stiffness) {
 
 }  // namespace
 
-Chosen choose_step(const FilmParams& p, const TileList& tiles, double texel_size, bool on_relief, bool beads,
-                   double left) {
+StepChoice choose_step(const FilmParams& p, const TileList& tiles, double texel_size, bool on_relief, bool beads,
+                       double left) {
     const double area = texel_size * texel_size;
     const double levelling = glm::length(p.weight.down) > 0 ? 0 : p.levelling;
     Deepest all, beside;
@@ -60,7 +60,7 @@ Chosen choose_step(const FilmParams& p, const TileList& tiles, double texel_size
         if (tiles.beside_seam(tile.slot)) beside.take(tile);
     }
     const double stiffness = all.stiffness;
-    Chosen out;
+    StepChoice out;
     double dt = beads ? kBeadStep : all.w > 0 ? kLongestStep : kLongestSoaked;
     const double flow = all.rate(p, levelling, area, on_relief);
     if (flow > 0) dt = std::min(dt, kFlowPart / flow);

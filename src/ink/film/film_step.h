@@ -12,7 +12,7 @@ inline constexpr double kBeadStep = 0.05;  // seconds: a bead goes a texel or a 
 
 /// A step and its division for the flow beside seams: blocks of texels end there, and limited flows would let
 /// texels lag behind. 0 parts: no division.
-struct Chosen {
+struct StepChoice {
     double dt = 0;  ///< seconds
     Step step;
     int parts = 0;
@@ -21,7 +21,7 @@ struct Chosen {
 /// Returns the longest stable step of the listed tiles, at most `left` seconds and at least
 /// `FilmParams::shortest_step`. `texel_size` in metres; `on_relief`: any of the tiles has dry relief; `beads`: some
 /// beads run.
-Chosen choose_step(const FilmParams& p, const TileList& tiles, double texel_size, bool on_relief, bool beads,
-                   double left);
+StepChoice choose_step(const FilmParams& p, const TileList& tiles, double texel_size, bool on_relief, bool beads,
+                       double left);
 
 }  // namespace tuft::ink::wet

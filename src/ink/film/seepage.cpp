@@ -41,7 +41,7 @@ bool Seepage::find(const TileList& tiles, std::span<const Sources> sources) {
         if (sources[at].liquid[0] || sources[at].liquid[1]) {
             for (const std::uint32_t i : list[at].around)
                 if (i != kNone) wanted[i] = 1;
-            for (const Beyond& other : list[at].seams.others)
+            for (const SeamNeighbour& other : list[at].seams.others)
                 if (other.linked && other.place != kNone) wanted[other.place] = 1;
         }
     places_.clear();

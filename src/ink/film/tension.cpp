@@ -104,7 +104,7 @@ bool Tension::find(const TileList& tiles, std::span<const std::unique_ptr<Plane>
     const auto each_beside = [&](const Active& tile, auto&& visit) {
         for (const std::uint32_t i : tile.around)
             if (i != kNone) visit(i);
-        for (const Beyond& other : tile.seams.others)
+        for (const SeamNeighbour& other : tile.seams.others)
             if (other.linked && other.place != kNone) visit(other.place);
     };
     for (std::size_t at = 0; at < list.size(); ++at) {
@@ -133,8 +133,8 @@ void Tension::cross_seams(std::uint32_t place, std::span<const Sources> sources,
                    there = static_cast<std::size_t>(field_of(l.other_texel));
         const Sources& from = sources[beyond.place];
         const float total = at(from.liquid[0], l.other_texel) + at(from.liquid[1], l.other_texel);
-        const Carried c = flow_over_link(l, {tile.w[here], beyond.w[there]}, {tile.grid.p[here], beyond.grid.p[there]},
-                                         {work.rate[here], 1 / std::max(total, grip)});
+        const LinkFlow c = flow_over_link(l, {tile.w[here], beyond.w[there]}, {tile.grid.p[here], beyond.grid.p[there]},
+                                          {work.rate[here], 1 / std::max(total, grip)});
         work.dw[l.texel] -= c.flow;
         for (int p = 0; p < pigments; ++p) {
             const Plane* open = from.open[static_cast<std::size_t>(p)];
@@ -265,7 +265,7 @@ void Tension::cycle() {
     }
 }
 
-Tension::Solved Tension::solve(const TileList& tiles, std::span<const Sources> sources, double dt) {
+Tension::TensionResult Tension::solve(const TileList& tiles, std::span<const Sources> sources, double dt) {
     const double area = tiles.map.texel_size * tiles.map.texel_size;
     begin(tiles, sources,
           static_cast<float>(params_.ripples.tension / (3 * params_.ripples.viscosity) * dt *

@@ -110,12 +110,12 @@ void prolong(const Grid<N>& coarse, Grid<2 * N>& fine);
 void tension_flow(Work& work, const Geometry& g, const Grid<16>& grid, float grip);
 
 /// Flow from one end of a face to the other, film units · mean area, and what it carries of each end's pigments.
-struct Carried {
+struct LinkFlow {
     float flow, a, b;
 };
 /// Over a link, from its texel to the other one: of both thickness, pressure, 1 / H.
-Carried flow_over_link(const TensionLink& link, const std::array<float, 2>& w, const std::array<float, 2>& p,
-                       const std::array<float, 2>& rate);
+LinkFlow flow_over_link(const TensionLink& link, const std::array<float, 2>& w, const std::array<float, 2>& p,
+                        const std::array<float, 2>& rate);
 
 /// Looks for places where liquid thicker than `held` is curved as ripples are.
 Ripples find_ripples(const Field& w, const Geometry& g, float held);
@@ -144,12 +144,12 @@ class Tension {
     /// are any.
     bool find(const TileList& tiles, std::span<const std::unique_ptr<Plane>> relief);
 
-    struct Solved {
+    struct TensionResult {
         double bends = 1;   ///< Σ curvature² after the step over that before it
         double change = 0;  ///< greatest, of the thickness there
     };
     /// Finds the pressures of a step of `dt` seconds on those tiles.
-    Solved solve(const TileList& tiles, std::span<const Sources> sources, double dt);
+    TensionResult solve(const TileList& tiles, std::span<const Sources> sources, double dt);
     /// Of a place in the list; null: not among those tiles.
     const TensionTile* tile(std::uint32_t place) const {
         const std::uint32_t i = tiles_.index(place);

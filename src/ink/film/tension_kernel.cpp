@@ -142,7 +142,7 @@ TUFT_CLONES float residual8(const Grid<8>& g, Residual<8>& r) {
     return residual_of(g, r);
 }
 
-TUFT_INLINE Carried carried(float mobility, float p0, float p1, float most, float rate0, float rate1) {
+TUFT_INLINE LinkFlow carried(float mobility, float p0, float p1, float most, float rate0, float rate1) {
     const float flow = larger(smaller(mobility * (p0 - p1), most), -most);
     return {flow, positive(flow) * rate0, smaller(flow, 0) * rate1};
 }
@@ -165,7 +165,7 @@ TUFT_INLINE void faces(Work& o, Faces& f, const Geometry& g, const float* p, con
 #pragma GCC ivdep
     for (int x = 0; x < kSide; ++x) {
         const int from = k + first + x, to = k + second + x;
-        const Carried c =
+        const LinkFlow c =
             carried(mobility[x], p[from], p[to], share * most_of(o, g, from, to), o.rate[from], o.rate[to]);
         through[x] = c.flow;
         a[x] = c.a;
@@ -198,7 +198,7 @@ TUFT_CLONES void flow_by_tension(Work& o, const Geometry& g, const Grid<16>& t, 
         faces(o, o.x, g, p, {&t.mx[static_cast<std::size_t>(row * (kSide + 1) + 1)], field_at(0, row), 0, 1, 1});
         first[0] = t.mx[static_cast<std::size_t>(row * (kSide + 1))];
         const int k = field_at(-1, row);
-        const Carried c = carried(first[0], p[k], p[k + 1], most_of(o, g, k, k + 1), o.rate[k], o.rate[k + 1]);
+        const LinkFlow c = carried(first[0], p[k], p[k + 1], most_of(o, g, k, k + 1), o.rate[k], o.rate[k + 1]);
         o.x.a[k] = c.a;
         o.x.b[k] = c.b;
         o.through[k] = c.flow;
@@ -214,8 +214,8 @@ TUFT_CLONES void flow_by_tension(Work& o, const Geometry& g, const Grid<16>& t, 
             const float* m = &mobility[static_cast<std::size_t>((row + 1) * (kSide + 1))];
             const int k = field_at(-1, row);
             faces(o, f, g, p, {m + 1, k + 1, from, to, 0.5f});
-            const Carried c = carried(m[0], p[k + from], p[k + to], 0.5f * most_of(o, g, k + from, k + to),
-                                      o.rate[k + from], o.rate[k + to]);
+            const LinkFlow c = carried(m[0], p[k + from], p[k + to], 0.5f * most_of(o, g, k + from, k + to),
+                                       o.rate[k + from], o.rate[k + to]);
             f.a[k] = c.a;
             f.b[k] = c.b;
             o.through[k] = c.flow;
@@ -356,8 +356,8 @@ void tension_flow(Work& work, const Geometry& g, const Grid<16>& grid, float gri
     flow_by_tension(work, g, grid, grip);
 }
 
-Carried flow_over_link(const TensionLink& link, const std::array<float, 2>& w, const std::array<float, 2>& p,
-                       const std::array<float, 2>& rate) {
+LinkFlow flow_over_link(const TensionLink& link, const std::array<float, 2>& w, const std::array<float, 2>& p,
+                        const std::array<float, 2>& rate) {
     return carried(link.mobility, p[0], p[1], kMostOfLinks * link.area * smaller(w[0], w[1]), rate[0], rate[1]);
 }
 

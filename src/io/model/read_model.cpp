@@ -130,7 +130,7 @@ mesh::PolygonSoup read_model(const std::filesystem::path& path, const CadReading
     return soup;
 }
 
-bool fixes_up(const std::filesystem::path& path) {
+bool has_fixed_up_axis(const std::filesystem::path& path) {
     const std::string extension = lower_extension(path);
     const bool plain = extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off";
     return is_model_file(path) && !plain;
@@ -139,7 +139,7 @@ bool fixes_up(const std::filesystem::path& path) {
 std::optional<double> metres_per_unit_of(const std::filesystem::path& path) {
     const std::string extension = lower_extension(path);
     const bool is_vrml = extension == ".wrl" || extension == ".vrml";
-    return fixes_up(path) && !is_vrml ? std::optional(1.0) : std::nullopt;
+    return has_fixed_up_axis(path) && !is_vrml ? std::optional(1.0) : std::nullopt;
 }
 
 }  // namespace tuft::io

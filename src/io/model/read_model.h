@@ -41,6 +41,6 @@ std::optional<double> metres_per_unit_of(const std::filesystem::path& path);
 
 /// Returns true where the format defines its axes, so that `read_model` has turned the model z up: for all but OBJ,
 /// PLY, STL and OFF.
-bool fixes_up(const std::filesystem::path& path);
+bool has_fixed_up_axis(const std::filesystem::path& path);
 
 }  // namespace tuft::io

@@ -253,7 +253,7 @@ struct Project::State {
     fs::path place;                   ///< where the file is: of a project that is being made, elsewhere
     std::optional<ProjectLock> lock;  ///< none: to be read only
     SQLite::Database db;
-    mutable Overseer overseer;
+    mutable CallBudget budget;
     OpenFile file;
     std::uint32_t version = 0;  ///< change counter of the file as last read or written here
     mutable FileStamp seen;
@@ -263,18 +263,18 @@ struct Project::State {
           place(p),
           lock(std::move(l)),
           db(p.string(), SQLite::OPEN_READWRITE),
-          overseer(db.getHandle()),
+          budget(db.getHandle()),
           file(p),
           seen(stamp_of(p)) {}
 
     /// `hears`: whoever listens may stop it.
     template <class Fn>
     auto run(Fn&& fn, bool hears = false) {
-        overseer.begin(seen.size, hears);
+        budget.begin(seen.size, hears);
         try {
             return guarded(path, place, [&] { return fn(db); });
         } catch (const Cancelled&) {
-            if (overseer.spent()) damaged(path, "reading it does not come to an end");
+            if (budget.spent()) damaged(path, "reading it does not come to an end");
             throw;
         }
     }
@@ -312,14 +312,14 @@ Project& Project::operator=(Project&&) noexcept = default;
 
 Project Project::open_file(const fs::path& path, std::optional<ProjectLock> lock, const ProgressFn& progress) {
     auto state = guarded(path, path, [&] { return std::make_unique<State>(path, std::move(lock)); });
-    state->overseer.listen(progress);
+    state->budget.listen(progress);
     report(progress, "reading", 0);
     state->run(
         [&](SQLite::Database& db) {
             restrain(db);
             check_schema(db, path);
             set_pragmas(db, state->lock ? Access::write : Access::read);
-            const std::string verdict = state->overseer.check_pages(db);
+            const std::string verdict = state->budget.check_pages(db);
             if (verdict != "ok") damaged(path, verdict);
             state->version = state->change_counter();
         },
@@ -381,7 +381,7 @@ Project Project::open(const fs::path& path, const OpenOptions& options) {
 }
 
 void Project::listen(ProgressFn progress) {
-    state_->overseer.listen(std::move(progress));
+    state_->budget.listen(std::move(progress));
 }
 
 bool Project::changed_outside() const {
@@ -416,7 +416,7 @@ std::string Project::written_by() const {
 ProjectModel Project::model() const {
     return state_->run(
         [&](SQLite::Database& db) {
-            ProjectModel model = load_model(db, state_->path, state_->overseer.progress());
+            ProjectModel model = load_model(db, state_->path, state_->budget.progress());
             for (const PresetText& preset : get_presets(db, state_->path, "substrate")) model.substrate = preset.second;
             return model;
         },
@@ -526,8 +526,8 @@ void Project::remove(std::uint64_t stroke_id) {
 }
 
 std::vector<stroke::JournalEntry> Project::strokes() const {
-    return state_->run(
-        [&](SQLite::Database& db) { return load_strokes(db, state_->path, state_->overseer.progress()); }, true);
+    return state_->run([&](SQLite::Database& db) { return load_strokes(db, state_->path, state_->budget.progress()); },
+                       true);
 }
 
 std::size_t Project::n_strokes() const {
@@ -556,7 +556,7 @@ std::optional<SavedCanvases> Project::load_canvases(std::size_t n_slots) const {
         SavedCanvases saved;
         saved.stroke_id = std::strtoull(get_meta(db, "tiles_stroke").c_str(), nullptr, 10);
         std::uint64_t hash = 0;
-        saved.layers = tuft::io::load_canvases(db, state_->path, n_slots, hash, state_->overseer.progress());
+        saved.layers = tuft::io::load_canvases(db, state_->path, n_slots, hash, state_->budget.progress());
         // What does not add up is made again from the strokes.
         if (get_meta(db, "tiles_hash") != std::to_string(hash)) return std::nullopt;
         return saved;

@@ -143,25 +143,25 @@ constexpr std::uintmax_t kFreeTicks = 20'000, kBytesPerTick = 300;
 
 }  // namespace
 
-Overseer::Overseer(sqlite3* db) : db_(db) {
+CallBudget::CallBudget(sqlite3* db) : db_(db) {
     sqlite3_progress_handler(
-        db, kTickSteps, [](void* self) { return static_cast<Overseer*>(self)->tick(); }, this);
+        db, kTickSteps, [](void* self) { return static_cast<CallBudget*>(self)->tick(); }, this);
 }
 
-void Overseer::begin(std::uintmax_t bytes, bool hears) {
+void CallBudget::begin(std::uintmax_t bytes, bool hears) {
     left_ = kFreeTicks + bytes / kBytesPerTick;
     hears_ = hears;
     spent_ = false;
 }
 
-int Overseer::tick() {
+int CallBudget::tick() {
     spent_ = left_ == 0;
     left_ -= !spent_;
     return spent_ || (hears_ && progress_ && !progress_("reading", 0));
 }
 
 // SQLite looks at no progress while it checks pages, but it can be interrupted.
-std::string Overseer::check_pages(SQLite::Database& db) {
+std::string CallBudget::check_pages(SQLite::Database& db) {
     std::mutex mutex;
     std::condition_variable ended;
     bool done = false, stopped = false;

@@ -31,11 +31,11 @@ void restrain(SQLite::Database& db);
 
 /// Stops a running call on request, or when it takes more steps than reading a file of its size can take. A damaged
 /// B-tree may otherwise have endlessly many leaves. The database must not outlive it.
-class Overseer {
+class CallBudget {
   public:
-    explicit Overseer(sqlite3* db);
-    Overseer(const Overseer&) = delete;
-    Overseer& operator=(const Overseer&) = delete;
+    explicit CallBudget(sqlite3* db);
+    CallBudget(const CallBudget&) = delete;
+    CallBudget& operator=(const CallBudget&) = delete;
 
     void listen(ProgressFn progress) { progress_ = std::move(progress); }
     const ProgressFn& progress() const { return progress_; }

@@ -337,7 +337,7 @@ bool ExactGeodesics::spread(const TriangleMesh& mesh, std::uint32_t triangle, co
             ++queue_.ring;
             continue;
         }
-        const Next next = queue_.entries[queue_.rings[queue_.ring]];
+        const QueueEntry next = queue_.entries[queue_.rings[queue_.ring]];
         queue_.rings[queue_.ring] = next.next;
         if (next.vertex) {
             bend(Arrival(arrivals_[next.index]));

@@ -92,14 +92,14 @@ class ExactGeodesics {
         Vec2 onward;
     };
     /// A queue entry: a window or an arrival, in a list of entries of about the same distance from the origin.
-    struct Next {
+    struct QueueEntry {
         std::uint32_t index;
         bool vertex;
         std::uint32_t next;
     };
     /// Windows and arrivals by distance: rings of equal width, each a list.
     struct Queue {
-        std::vector<Next> entries;
+        std::vector<QueueEntry> entries;
         std::array<std::uint32_t, kRings> rings;  ///< by distance: lists of `entries`
         std::size_t ring = 0;                     ///< being processed
     };

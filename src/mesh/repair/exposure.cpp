@@ -34,7 +34,7 @@ ExposureProbe::ExposureProbe(const RawMesh& mesh) : mesh_(mesh), tree_(mesh.posi
     near_ = mesh.triangles.empty() ? 0 : kNear * bounds.diagonal();
 }
 
-bool ExposureProbe::sees_the_open(const Vec3& from, const Vec3& direction) const {
+bool ExposureProbe::is_ray_free(const Vec3& from, const Vec3& direction) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay ray{};
@@ -72,8 +72,8 @@ Exposure ExposureProbe::of(std::span<const std::uint32_t> faces, const std::vect
                      turn = 2 * std::numbers::pi * EvenSequence::part(i, 0.6180339887498949);
         const Vec3 flat = radius * (std::cos(turn) * f.t + std::sin(turn) * f.b);
         const Vec3 up = std::sqrt(std::max(0.0, 1 - even.c)) * f.n;
-        if (sees_the_open(from, flat + up)) seen.front += 1.0 / rays;
-        if (sees_the_open(from, flat - up)) seen.back += 1.0 / rays;
+        if (is_ray_free(from, flat + up)) seen.front += 1.0 / rays;
+        if (is_ray_free(from, flat - up)) seen.back += 1.0 / rays;
     }
     return seen;
 }

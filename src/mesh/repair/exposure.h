@@ -27,7 +27,7 @@ class ExposureProbe {
     Exposure of(std::span<const std::uint32_t> faces, const std::vector<bool>& turned, int rays) const;
 
   private:
-    bool sees_the_open(const Vec3& from, const Vec3& direction) const;
+    bool is_ray_free(const Vec3& from, const Vec3& direction) const;
 
     const RawMesh& mesh_;
     RayTree tree_;

@@ -49,9 +49,9 @@ Message size_fault(const std::vector<JournalEntry>& entries,
                    const std::function<double(const std::string& brush)>& length_of, const mesh::SurfaceQuery& former,
                    const mesh::SurfaceQuery& revised);
 
-/// The same of new strokes, which have no former model: it is too small where its diagonal is less than a quarter of
-/// the drawing's, all flat strokes together where they are placed, and less than the length of a tuft that paints them.
-/// What is in space says by itself where it is, and counts for nothing.
+/// The same of new strokes, which have no former model. The model is too small where its diagonal is less than a
+/// quarter of the drawing's and less than the length of a tuft that paints it. The drawing: all flat strokes, as
+/// placed. Strokes in space do not count.
 Message size_fault(const std::vector<JournalEntry>& entries,
                    const std::function<double(const std::string& brush)>& length_of, const mesh::SurfaceQuery& model);
 

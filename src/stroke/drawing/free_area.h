@@ -44,15 +44,16 @@ struct FreeArea {
 ///
 ///     1 − |mean of the normals around| + max(0, r − 2 q)
 ///
-/// with the mean square distance r of the depths from the plane, gaps taken half a cell deep, in squares of a cell, and
-/// the lower quartile q of r over the view, which is the noise; where it exceeds 0.1, such as at a handle, 2 are added.
+/// r: mean square distance of the depths from the plane, squares of a cell, with gaps taken half a cell deep. q: lower
+/// quartile of r over the view, the noise. A roughness above 0.1, such as at a handle, counts 2 more.
 ///
 /// A rectangle has the given `aspect` (width over height, clamped to 1/32–32), free rays only, and |mean of its
 /// normals| ≥ 0.85: no more bent than a wide arc of a cylinder. It is worth its scale / (1 + mean roughness / 0.08). Of
-/// rectangles that are worth as much within 3 %, the middle one of the largest group is taken. In a view whose halves
-/// mirror each other, to a cell and four times the noise, the best rectangle on the middle line is taken where it is
-/// worth at least a third of the best of all; where 90 to 75 % of its rays are mirrored, at least a third to all.
-/// Returns nothing where less than 1/32 of the view is free. Cost: about 0.1 s.
+/// rectangles that are worth as much within 3 %, the middle one of the largest group is taken. A
+/// ray is mirrored where the other half of the view agrees with it to a cell and four times the noise. Where 90 % of
+/// the rays are, the best rectangle on the middle line is taken if it is worth at least a third of the best of all.
+/// From 90 to 75 % that part rises from a third to all. Returns nothing where less than 1/32 of the view is free. Cost:
+/// about 0.1 s.
 std::optional<FreeArea> find_free_area(const mesh::SurfaceQuery& query, Side side, double aspect);
 
 }  // namespace tuft::stroke

@@ -42,9 +42,9 @@ struct RollFollower {
 /// on.
 double follow_stroke(RollFollower& state, double hand, const Vec2& motion);
 
-/// Roll of a blade in a hand that turns: a blade lies along the hair that it drags, so it turns as late as the point of
-/// a string of length λ, else it sweeps its line wider in one bend than in the other. With e the lag of the roll r over
-/// the path s,
+/// Roll of a blade in a hand that turns. A blade lies along the hair that it drags, so it turns as late as the end of a
+/// string of length λ. Without that lag its line is wider in one bend than in the other. With e the lag of the roll r
+/// over the path s,
 ///
 ///     de/ds = dr/ds − e/λ,
 ///

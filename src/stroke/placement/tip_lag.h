@@ -86,9 +86,9 @@ DiskCache shared_tip_lag_cache();
 /// lag of the part of `ahead` that is across the broad side.
 Vec2 tip_lag_at(const HolderOptions& options, double pressure, const Vec2& tilt, double roll, const Vec2& ahead);
 
-/// Returns the tilt, radians towards right and down, of a holder that leans as its make is held: by `options.lean`
-/// towards `ahead` (as of `tip_lag_at`), with `options.across` by the part of that across its broad side, so that along
-/// its edge it stands upright, and a blade by the part along its broad side.
+/// Returns the tilt of a holder that leans as its make is held, radians towards right and down: by `options.lean`
+/// towards `ahead` (as of `tip_lag_at`). With `options.across` it leans by the part of that across its broad side only,
+/// and stands upright along its edge. A blade leans by the part along its broad side only.
 Vec2 lean_of_make(const HolderOptions& options, double roll, const Vec2& ahead);
 
 /// Returns the length of the string on which a point is dragged whose direction a make leans in, metres: 0.3 lengths of

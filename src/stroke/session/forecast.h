@@ -12,9 +12,9 @@
 
 /// \file
 /// Bending and contact of a stroke's hair, computed before its ink is deposited. Both do not depend on the ink of wet
-/// hair. `StrokeSession` uses a forecast as long as the hair is wet. Strokes of a batch are forecast at the same time;
-/// a stroke that is painted by itself is forecast by another thread a little ahead of its ink, and so are the poses of
-/// a hand that paints, as far as they are known.
+/// hair. `StrokeSession` uses a forecast as long as the hair is wet. Strokes of a batch are forecast at the same time.
+/// Another thread forecasts a single stroke a little ahead of its ink. It does the same for the known poses of a hand
+/// that paints.
 namespace tuft::stroke {
 
 /// Contact and hair at one pose of a path, as the session would compute them.

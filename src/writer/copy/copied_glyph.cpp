@@ -70,7 +70,7 @@ void bridge(CopiedLine& line, const Station& to, bool through) {
     }
 }
 
-CopiedLine line_of(const Skeleton& s, const std::vector<PieceUse>& stroke, const Room& room) {
+CopiedLine line_of(const Skeleton& s, const std::vector<PieceUse>& stroke, const InkClearance& room) {
     CopiedLine out;
     for (std::size_t k = 0; k < stroke.size(); ++k) {
         const Piece& p = s.pieces[stroke[k].piece];
@@ -102,14 +102,14 @@ CopiedLine line_of(const Skeleton& s, const std::vector<PieceUse>& stroke, const
 }
 
 /// Distance from a point to the edge of the ink along a direction.
-double ray(const Room& room, const Vec2& p, const Vec2& d) {
+double ray(const InkClearance& room, const Vec2& p, const Vec2& d) {
     double far = 0;
     while (far < kLongestHead && room.at(p + far * d) > 0) far += 1;
     return far;
 }
 
 /// Where a wide head reaches out to the upper left, a brush landed there: the line begins in that corner.
-void begin_in_corner(CopiedLine& line, const Room& room) {
+void begin_in_corner(CopiedLine& line, const InkClearance& room) {
     std::vector<Station>& p = line.points;
     const Vec2 down = p[std::min<std::size_t>(p.size() - 1, 20)].centre - p[0].centre;
     if (p.size() < 12 || down.y > -0.5 * std::abs(down.x)) return;  // 橫 and 提 begin as they go
@@ -162,7 +162,7 @@ std::vector<Cells> areas_of(const Cells& ink, const std::vector<CopiedLine>& lin
 }  // namespace
 
 Glyph copied_glyph(const Cells& ink, const Skeleton& skeleton, const StrokeOrder& order, char32_t code) {
-    const Room room(ink);
+    const InkClearance room(ink);
     std::vector<CopiedLine> lines;
     for (const auto& stroke : order) {
         lines.push_back(line_of(skeleton, stroke, room));

@@ -35,7 +35,7 @@ Vec2 unit_or(const Vec2& d, const Vec2& otherwise) {
 /// Follows the lines of thinned cells.
 class Tracer {
   public:
-    Tracer(const Cells& thin, const Room& room) : c_(thin), room_(room), node_(thin.inside.size(), kNone) {}
+    Tracer(const Cells& thin, const InkClearance& room) : c_(thin), room_(room), node_(thin.inside.size(), kNone) {}
 
     Skeleton trace() {
         for_cells([&](int i, int j) {
@@ -128,7 +128,7 @@ class Tracer {
     }
 
     const Cells& c_;
-    const Room& room_;
+    const InkClearance& room_;
     std::vector<std::uint32_t> node_;
     std::vector<std::uint8_t> used_;
     Skeleton out_;
@@ -231,7 +231,7 @@ std::vector<Vec2> blob_line(const Cells& ink, const Vec2& at, double reach) {
 }
 
 /// Continues a free end straight on to `kBefore` units before the edge, or takes as much off.
-void set_end(std::vector<Vec2>& line, const Room& room) {
+void set_end(std::vector<Vec2>& line, const InkClearance& room) {
     const double whole = length_of(line), reach = std::min(kEndReach, whole);
     double along = 0;
     std::size_t k = line.size() - 1;
@@ -242,7 +242,7 @@ void set_end(std::vector<Vec2>& line, const Room& room) {
     if (far > kBefore) line.push_back(end + (far - kBefore) * on);
 }
 
-void set_ends(Skeleton& s, const Cells& ink, const Room& room) {
+void set_ends(Skeleton& s, const Cells& ink, const InkClearance& room) {
     for (Piece& p : s.pieces) {
         SkeletonNode &from = s.nodes[p.from], &to = s.nodes[p.to];
         const bool head = from.n_pieces == 1, tail = to.n_pieces == 1;
@@ -268,7 +268,7 @@ void begin_upper_left(Piece& ring, SkeletonNode& node) {
 }
 
 /// Cuts pieces at corners; smooths them.
-void cut_corners(Skeleton& s, const Room& room) {
+void cut_corners(Skeleton& s, const InkClearance& room) {
     std::vector<Piece> pieces;
     for (Piece& p : s.pieces) {
         if (p.from == p.to && s.nodes[p.from].n_pieces == 2) begin_upper_left(p, s.nodes[p.from]);
@@ -309,7 +309,7 @@ double Piece::length() const {
     return length_of(line);
 }
 
-double Room::at(const Vec2& p) const {
+double InkClearance::at(const Vec2& p) const {
     const Vec2 q = glm::floor((p - ink_.lo) / ink_.cell);
     const int i = static_cast<int>(q.x), j = static_cast<int>(q.y);
     if (!ink_.at(i, j)) return 0;
@@ -317,7 +317,7 @@ double Room::at(const Vec2& p) const {
 }
 
 Skeleton skeleton_of(const Cells& ink) {
-    const Room room(ink);
+    const InkClearance room(ink);
     Cells lines = ink;
     thin(lines);
     Skeleton s = Tracer(lines, room).trace();

@@ -55,9 +55,9 @@ struct PieceCut {
 void cut_piece(Skeleton& skeleton, const PieceCut& cut);
 
 /// Distances to the edge of the ink, by places.
-class Room {
+class InkClearance {
   public:
-    explicit Room(const Cells& ink) : ink_(ink), clearance_(clearances(ink)) {}
+    explicit InkClearance(const Cells& ink) : ink_(ink), clearance_(clearances(ink)) {}
     double at(const Vec2& p) const;
 
   private:

@@ -284,7 +284,7 @@ void fit_finely(FitResult& best, const FitTarget& target, const FitTarget& whole
                 const BrushHand& hand, const Pace& pace, const FitOptions& options) {
     // Ink depends on the step: in the steps of a painter it lies a unit beside that of the tries.
     stroke::PlaneDrawing fine(hand.preset, hand.hold, options.fine_step * hand.unit, target.wanted.cell * hand.unit);
-    const std::vector<EdgeTurn> wanted_turns = turns_wanted(target.wanted);
+    const std::vector<EdgeTurn> wanted_turns = wanted_edge_turns(target.wanted);
     const std::vector<Station> before_last = best.stations;
     const std::vector<double> soft = last_softness_of(before_last);
     std::vector<Station> next = before_last;

@@ -41,7 +41,7 @@ InkScore score_of(const FitTarget& target, std::span<const float> depths, std::s
     return {either > 0 ? both / either : 0, both > 0 ? both / (both + deep) : 0};
 }
 
-std::vector<EdgeTurn> turns_wanted(const Cells& wanted) {
+std::vector<EdgeTurn> wanted_edge_turns(const Cells& wanted) {
     return edge_turns(wanted, coverage_of(wanted), 0.5 * kKnuckle);
 }
 

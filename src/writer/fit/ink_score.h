@@ -27,10 +27,10 @@ std::vector<float> coverage_by(const stroke::PlaneInk& ink, const Cells& cells);
 InkScore score_of(const FitTarget& target, std::span<const float> depths, std::span<const float> coverage);
 
 /// Returns the turns of an area by which the knuckles of ink on it are told.
-std::vector<EdgeTurn> turns_wanted(const Cells& wanted);
+std::vector<EdgeTurn> wanted_edge_turns(const Cells& wanted);
 
-/// Returns Σ min(|curvature| / kKnuckle, 4) over the knuckles of ink, `turns_wanted` given. Those under other strokes,
-/// where errors weigh less than 1, are not seen and do not count.
+/// Returns Σ min(|curvature| / kKnuckle, 4) over the knuckles of ink, `wanted_edge_turns` given. Those under other
+/// strokes, where errors weigh less than 1, are not seen and do not count.
 double sharpness_of(const FitTarget& target, std::span<const EdgeTurn> turns, std::span<const float> coverage);
 
 }  // namespace tuft::writer

@@ -89,9 +89,9 @@ std::optional<std::string> size_that_fits(const std::string& brush, double side)
 ///
 ///     g ≤ link (1 − 0.35 θ / 2π),  g ≥ 20 units · θ if θ > π / 2,
 ///
-/// and at most a quarter of it lies over the ink of other strokes; elsewhere the brush is lifted. Its half width is 2.2
-/// `link_half` at both ends, and falls to `link_half` (1 − g / 2 link) at 0.55 of its way by the square of the distance
-/// from there. It takes the place of as much as 40 units of a head that lies more than 45° across its stroke.
+/// and at most a quarter of it lies over the ink of other strokes. Elsewhere the brush is lifted. The link's half width
+/// is 2.2 `link_half` at both ends, and falls to `link_half` (1 − g / 2 link) at 0.55 of its way by the square of the
+/// distance from there. It takes the place of as much as 40 units of a head that lies more than 45° across its stroke.
 std::vector<std::vector<Station>> linked(std::vector<std::vector<Station>> strokes, const Style& style);
 
 }  // namespace tuft::writer

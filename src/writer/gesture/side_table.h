@@ -62,12 +62,11 @@ inline constexpr double kRoundTurn = 2.4;  ///< radians
 /// script hooks do (己) where their corner is too blunt to end a segment.
 bool is_round(const StrokeLine& line);
 
-/// Returns the sides of a round stroke, to which no table applies: half as wide upwards (y of the direction 1) as
-/// downwards,
+/// Returns the sides of a round stroke, to which no table applies. With y of its direction, 1 upwards,
 ///
-///     half = 24 (3 − y) / 4 units,
+///     half = 24 (3 − y) / 4 units.
 ///
-/// with a blunt head and a tail that tapers over a sixth of the stroke.
+/// Its head is blunt; its tail tapers over a sixth of the stroke.
 StrokeSides round_sides(const StrokeLine& line);
 
 /// Sides as one row: left and right of each segment, then the fans of head and tail.

@@ -31,10 +31,10 @@ struct FeatureLine {
 /// `through`. A reader outside sees the line run to the right, one above a level surface towards +x or, where it runs
 /// more along y, +y; a closed line above a level surface does so at the place.
 ///
-/// A crease is where the surface bends by 12° and more within 4, 8, 16 or 32 mm (at most a tenth of the model's size),
-/// the least that does, and 2.5 times as much as beside it within as much. Its line is the middle of the bend, Σ x Δφ /
-/// Σ Δφ over two such lengths of a section across it, φ the direction of the faces. It is followed in half of those
-/// steps to where the bend falls below 7°.
+/// A crease is where the surface bends by at least 12° within 4, 8, 16 or 32 mm, and by 2.5 times as much as within the
+/// same length beside it. The shortest such length counts, at most a tenth of the model's size. Its line is the middle
+/// of the bend, Σ x Δφ / Σ Δφ over two such lengths of a section across it, φ the direction of the faces. It is
+/// followed in half of those steps to where the bend falls below 7°.
 ///
 /// Throws `Error` where no line is within reach.
 FeatureLine feature_line(const mesh::SurfaceQuery& query, const Vec3& through, double reach);

@@ -34,8 +34,8 @@ unsigned TriedStrokes::texture(const std::string& brush, std::uint64_t reading) 
 }
 
 // Before those that are known to be missing in the cache.
-void TriedStrokes::want(Wish wish) {
-    wanted_.insert(std::ranges::find_if(wanted_, &Wish::to_paint), std::move(wish));
+void TriedStrokes::want(PictureRequest request) {
+    wanted_.insert(std::ranges::find_if(wanted_, &PictureRequest::to_paint), std::move(request));
 }
 
 void TriedStrokes::update(bool may_paint) {
@@ -46,16 +46,17 @@ void TriedStrokes::update(bool may_paint) {
         if (painting_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
         Painted painted = painting_.get();
         if (painted.stopped)
-            want(std::move(painted.wish));
+            want(std::move(painted.request));
         else if (painted.missing)
-            wanted_.push_back({std::move(painted.wish.brush), painted.wish.reading, true});
-        else if (Picture& p = pictures_[painted.wish.brush]; p.reading == painted.wish.reading)
+            wanted_.push_back({std::move(painted.request.brush), painted.request.reading, true});
+        else if (Picture& p = pictures_[painted.request.brush]; p.reading == painted.request.reading)
             p.picture.rgb = std::move(painted.rgb);
     }
-    std::erase_if(wanted_, [&](const Wish& wish) { return pictures_[wish.brush].reading != wish.reading; });
+    std::erase_if(wanted_,
+                  [&](const PictureRequest& request) { return pictures_[request.brush].reading != request.reading; });
     if (!may_paint || wanted_.empty() || (wanted_.front().to_paint && now - busy_at_ < kRest)) return;
     stop_ = false;
-    painting_ = std::async(std::launch::async, [this, wish = wanted_.front()] { return paint(wish); });
+    painting_ = std::async(std::launch::async, [this, request = wanted_.front()] { return paint(request); });
     wanted_.pop_front();
 }
 
@@ -63,10 +64,10 @@ void TriedStrokes::release() {
     for (auto& [brush, p] : pictures_) app::release(p.texture);
 }
 
-TriedStrokes::Painted TriedStrokes::paint(Wish wish) const {
-    Painted out{.wish = std::move(wish), .rgb = {}};
+TriedStrokes::Painted TriedStrokes::paint(PictureRequest request) const {
+    Painted out{.request = std::move(request), .rgb = {}};
     try {
-        const brush::Preset preset = brush::load_preset(out.wish.brush);
+        const brush::Preset preset = brush::load_preset(out.request.brush);
         CacheKey key("tried stroke 5");
         brush::Preset content = preset;
         content.name.clear();
@@ -78,7 +79,7 @@ TriedStrokes::Painted TriedStrokes::paint(Wish wish) const {
             out.rgb = std::move(rgb);
         };
         if (cache_.read(key, take)) return out;
-        out.missing = !out.wish.to_paint;
+        out.missing = !out.request.to_paint;
         if (out.missing) return out;
         const auto progress = [this](std::string_view, double) { return !stop_.load(); };
         out.rgb = pictures::paint_tried_stroke(preset, progress, stroke::shared_tip_lag_cache()).rgb;

@@ -44,23 +44,23 @@ class TriedStrokes {
         unsigned texture = 0;
         std::uint64_t reading = 0;
     };
-    struct Wish {
+    struct PictureRequest {
         std::string brush;
         std::uint64_t reading = 0;
         bool to_paint = false;  ///< it is not stored
     };
     struct Painted {
-        Wish wish;
+        PictureRequest request;
         std::vector<std::uint8_t> rgb;
         bool stopped = false;
         bool missing = false;  ///< from the cache; it is painted later
     };
-    Painted paint(Wish wish) const;
-    void want(Wish wish);
+    Painted paint(PictureRequest request) const;
+    void want(PictureRequest request);
 
     DiskCache cache_;
     std::map<std::string, Picture> pictures_;  ///< of all that were asked for
-    std::deque<Wish> wanted_;
+    std::deque<PictureRequest> wanted_;
     std::chrono::steady_clock::time_point busy_at_ = std::chrono::steady_clock::now();  ///< something else was to do
     std::atomic<bool> stop_{false};
     std::future<Painted> painting_;

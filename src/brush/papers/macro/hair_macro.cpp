@@ -177,7 +177,7 @@ void collide(HairMacro& m, const HairRow& row, const MacroLaw& law, const Collis
         deform_skeleton(nodes, row.t, above, {.rigidity = law.rigidity, .aside = c.aside, .trunk = c.trunk});
     m.touching = bent.touching;
     if (bent.touching) {
-        kink_up(bent, row.t, above, row.length, friction_hold(m, law, bent.along, c.push));
+        add_kink(bent, row.t, above, row.length, friction_hold(m, law, bent.along, c.push));
         m.skeleton = fitted_to_contact(row, bent, above, to_world(c.pose, m.rest.skeleton[3]), c.pose.axis());
     }
     flatten(m, row, law, c.pose, c.planes);

@@ -109,8 +109,8 @@ double arc_half_angle(double ratio) {
     return ratio < 1 ? 0.5 * (low + high) : 0;
 }
 
-void kink_up(BentSkeleton& bent, std::span<const double> t, std::span<const HalfSpace> above, double length,
-             double held) {
+void add_kink(BentSkeleton& bent, std::span<const double> t, std::span<const HalfSpace> above, double length,
+              double held) {
     if (!bent.touching || held <= 0 || bent.touch <= 0) return;
     const Vec3 chord = bent.nodes.front() - bent.pivot;
     const double c = glm::length(chord), s = c + held * (length * bent.touch - c);

@@ -50,11 +50,11 @@ BentSkeleton deform_skeleton(std::span<const Vec3> nodes, std::span<const double
 /// [0, 1].
 double arc_half_angle(double ratio);
 
-/// Kinks up the part of the skeleton between pivot and tip: squeezed onto a chord shorter than its own length, it
+/// Bends up the part of the skeleton between pivot and tip. Squeezed onto a chord shorter than its own length, it
 /// bulges off the surface as a circular arc. The text asks for the original arc length over the squeezed chord [p]; the
 /// circle and the plane of chord and normal are [R]. `held` is the fraction of the squeeze that friction holds, 0 … 1
 /// [X]: the arc has length c + held (s − c), with s the rest length `length` · t_p.
-void kink_up(BentSkeleton& bent, std::span<const double> t, std::span<const HalfSpace> above, double length,
-             double held);
+void add_kink(BentSkeleton& bent, std::span<const double> t, std::span<const HalfSpace> above, double length,
+              double held);
 
 }  // namespace tuft::brush::macro

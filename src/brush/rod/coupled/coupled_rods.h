@@ -22,9 +22,9 @@
 /// row, as |v| goes from half of their depth to all of it.
 ///
 /// u = d·t − s₀ and v = d·m are the shifts of the neighbours along the hair and out of their row since the straight
-/// rest. ψ is a spring of stiffness k_s that slips where its force passes μ f k_n ⟨g₀ − g⟩ (Coulomb, lagged): coupled
-/// hair shears before it slides. u belongs to facing segments, with t = ½ (t₁ + t₂): it turns with them, which is what
-/// makes a row stiff across its broad side.
+/// rest. ψ is a spring of stiffness k_s that slips where its force passes μ f k_n ⟨g₀ − g⟩ (Coulomb, lagged). So
+/// coupled hair shears before it slides. u belongs to facing segments and turns with them: t = ½ (t₁ + t₂). That makes
+/// a row stiff across its broad side.
 ///
 /// In D and v the directions, and f, are frozen during one pass of the outer fixed point over friction. Method: Newton
 /// over all rods together; each step by elimination from tip to root in blocks of all rods. Cost: 2 K tangents against

@@ -50,7 +50,7 @@ TUFT_CLONES void columns_of_tile(float* __restrict sum, float* __restrict low, c
         columns_of<kSide>(sum + row * kSide, low + row * kSide, s + field_at(0, row * kBlock), kRow);
 }
 
-Means means_of(const Field& liquid, const Beside& beside) {
+Means means_of(const Field& liquid, const TileNeighbours& beside) {
     Means m;
     const auto whole = [](std::uint16_t blocks, int column, int row) { return blocks >> (row * kBlocks + column) & 1; };
     alignas(64) std::array<float, kBlocks * kSide> sum, low;
@@ -199,7 +199,7 @@ TUFT_CLONES void spread(Work& work, const Fluxes& f) {
 
 }  // namespace
 
-void film_block_flow(Work& work, const Geometry& g, const Beside& beside, const Step& p) {
+void film_block_flow(Work& work, const Geometry& g, const TileNeighbours& beside, const Step& p) {
     const Fluxes fluxes =
         fluxes_of(means_of(work.w, beside), g, {p.flow, p.threshold, p.levelling, p.retained, p.limit.most});
     if (fluxes.any) spread(work, fluxes);

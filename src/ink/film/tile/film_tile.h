@@ -164,14 +164,14 @@ bool fluxes(Work& work, const Geometry& g, const Step& step);
 
 /// Liquid on the tiles to the left, to the right, below and above [256], null: none; and in which of this and
 /// their blocks it may flow from block to block.
-struct Beside {
+struct TileNeighbours {
     std::array<const float*, 4> liquid{};
     std::array<std::uint16_t, 4> blocks{};
     std::uint16_t here = 0;
 };
 /// Where `most` holds flows back inside wide wet places: the rest of what flows on the surface, between blocks of 4 × 4
 /// texels, which is stable for steps 16 times as long. Adds to dw and to what carries pigments.
-void film_block_flow(Work& work, const Geometry& g, const Beside& beside, const Step& step);
+void film_block_flow(Work& work, const Geometry& g, const TileNeighbours& beside, const Step& step);
 
 /// What a texel's liquid became.
 struct Outcome {
