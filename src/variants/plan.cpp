@@ -149,7 +149,8 @@ void read_painting(const Value& v, PaintingChoice& p) {
     read_table(v.table(), v.source,
                {{"substrate", [&](const Value& x) { p.substrate = x.text(); }},
                 {"film", [&](const Value& x) { p.film = x.text(); }},
-                {"dip", [&](const Value& x) { p.dip = x.text(); }},
+                // "carry" is the word of earlier versions.
+                {"dip", [&](const Value& x) { p.dip = x.text() == "carry" ? "persistent" : x.text(); }},
                 {"fit_brush", [&](const Value& x) { p.fit_brush = x.yes(); }}});
 }
 

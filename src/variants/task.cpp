@@ -107,7 +107,7 @@ void check_task(const Task& task, const std::string& source) {
     check.word("up", task.model.up, {"", "y", "z"});
     check.number("atlas_size", task.model.atlas_size, 0, 65536);
     check.word("film", task.painting.film, {"still", "wet"});
-    check.word("dip", task.painting.dip, {"each", "carry", "endless"});
+    check.word("dip", task.painting.dip, {"each", "persistent", "endless", "carry"});
     check_placement(task.placement, check);
     check_tolerance(task.tolerance, check);
     check.number("sample", task.sample, 0, kMostSamples);

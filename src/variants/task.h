@@ -39,12 +39,12 @@ struct PlacementChoice {
 /// Spread of placements and hands: standard deviations of independent normal numbers (deviation.h).
 struct Tolerance {
     std::string name;
-    double shift_mm = 0;         ///< of the placement, along each axis
-    double turn_deg = 0;         ///< of the placement
-    double scale = 0;            ///< of the size, relative
-    double hand_mm = 0;          ///< of the hand's path, along each axis
-    double hand_length_mm = 10;  ///< correlation length of `hand_mm` along the path
-    double pressure = 0;         ///< of each stroke's pressure, relative
+    double shift_mm = 0;         ///< 0–1000, of the placement, along each axis
+    double turn_deg = 0;         ///< 0–90, of the placement
+    double scale = 0;            ///< 0–0.2, of the size, relative
+    double hand_mm = 0;          ///< 0–1000, of the hand's path, along each axis
+    double hand_length_mm = 10;  ///< 0.01–10,000, correlation length of `hand_mm` along the path
+    double pressure = 0;         ///< 0–1, of each stroke's pressure, relative
 
     bool operator==(const Tolerance&) const = default;
 };
@@ -64,8 +64,10 @@ struct PictureChoice {
 
 /// How strokes are painted; words as those of `tuft paint`.
 struct PaintingChoice {
-    std::string substrate = "porcelain", film = "still", dip = "each";
-    bool fit_brush = false;
+    std::string substrate = "porcelain";
+    std::string film = "still";  ///< still, wet
+    std::string dip = "each";    ///< each, persistent (in tasks of earlier versions: carry), endless
+    bool fit_brush = false;      ///< a size that suits the drawing
 
     bool operator==(const PaintingChoice&) const = default;
 };

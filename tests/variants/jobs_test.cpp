@@ -59,8 +59,8 @@ TEST_F(JobsFolder, ATaskRunsOnceAndItsResultComesBack) {
     int painted = 0;
     const PaintTask paint = [&](const Task& t) { return ++painted, outcome(t); };
     EXPECT_EQ(j.state(1), TaskState::open);
-    EXPECT_EQ(run_task(j, 1, paint, known), Ran::painted);
-    EXPECT_EQ(run_task(j, 1, paint, known), Ran::done_before);
+    EXPECT_EQ(run_task(j, 1, paint, known), TaskResult::painted);
+    EXPECT_EQ(run_task(j, 1, paint, known), TaskResult::done_before);
     EXPECT_EQ(painted, 1);
     EXPECT_EQ(j.state(1), TaskState::done);
     const Outcome out = outcome(j.task(1));
@@ -75,9 +75,9 @@ TEST_F(JobsFolder, ATaskThatAnotherHasIsLeft) {
     {
         const auto other = j.lock(2);
         ASSERT_TRUE(other);
-        EXPECT_EQ(run_task(j, 2, outcome, known), Ran::taken);
+        EXPECT_EQ(run_task(j, 2, outcome, known), TaskResult::taken);
     }
-    EXPECT_EQ(run_task(j, 2, outcome, known), Ran::painted);
+    EXPECT_EQ(run_task(j, 2, outcome, known), TaskResult::painted);
 }
 
 TEST_F(JobsFolder, AFaultIsStoredAndAStopIsNot) {
@@ -85,14 +85,14 @@ TEST_F(JobsFolder, AFaultIsStoredAndAStopIsNot) {
     ContentHashes known;
     EXPECT_EQ(run_task(
                   j, 0, [](const Task&) -> Outcome { throw Error("no such brush"); }, known),
-              Ran::failed);
+              TaskResult::failed);
     EXPECT_EQ(j.state(0), TaskState::failed);
     EXPECT_EQ(j.failure(0), "no such brush");
     EXPECT_THROW(run_task(
                      j, 1, [](const Task&) -> Outcome { throw Cancelled(); }, known),
                  Cancelled);
     EXPECT_EQ(j.state(1), TaskState::open);
-    EXPECT_EQ(run_task(j, 0, outcome, known), Ran::painted);  // again, and now it goes
+    EXPECT_EQ(run_task(j, 0, outcome, known), TaskResult::painted);  // again, and now it goes
     EXPECT_EQ(j.state(0), TaskState::done);
 }
 
@@ -100,7 +100,7 @@ TEST_F(JobsFolder, AFileThatChangedIsNotPaintedUnderItsOldHash) {
     const Jobs j = jobs();
     std::ofstream(folder_ / "one.inkml") << "two";
     ContentHashes known;
-    EXPECT_EQ(run_task(j, 0, outcome, known), Ran::failed);
+    EXPECT_EQ(run_task(j, 0, outcome, known), TaskResult::failed);
     EXPECT_THAT(j.failure(0), HasSubstr("'one.inkml' has changed since the tasks were written"));
 }
 
@@ -121,7 +121,7 @@ TEST_F(JobsFolder, DamagedResultsAreFoundAndOpenAgain) {
     ContentHashes known;
     for (const char* name : {"result.json", "coverage.bin", "picture.png"})
         for (const bool shorter : {true, false}) {
-            ASSERT_EQ(run_task(j, 0, outcome, known), Ran::painted);
+            ASSERT_EQ(run_task(j, 0, outcome, known), TaskResult::painted);
             const fs::path file = j.result_folder(0) / name;
             if (shorter) {
                 fs::resize_file(file, fs::file_size(file) / 2);

@@ -96,6 +96,14 @@ TEST_F(PlanFolder, TaskComesBackFromItsTextWithTheSameHash) {
     }
 }
 
+TEST_F(PlanFolder, BrushesStayInHandByThePresentWordAndByTheEarlierOne) {
+    const std::string text = "models = ['a.ply']\nstrokes = ['one.inkml']\n[painting]\ndip = ";
+    const std::vector<Task> now = tasks_of(parse(text + "'persistent'\n")),
+                            before = tasks_of(parse(text + "'carry'\n"));
+    EXPECT_EQ(now[0].painting.dip, "persistent");
+    EXPECT_EQ(before, now);
+}
+
 TEST_F(PlanFolder, HashChangesWithEveryFileAndNothingElse) {
     const std::string text = "models = ['a.ply']\nstrokes = ['one.inkml']\n";
     const std::string before = hash_of(tasks_of(parse(text))[0]);
