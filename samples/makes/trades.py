@@ -23,20 +23,21 @@ def one_stroke():
     for k in range(6):
         turn = 60 * k + 8
         s = Stroke("petal", double_loaded("cinnabar", "titanium-white"))
-        s.curve([(-27, 0, 0, 90), (-25, -0.4, 0.35, 90), (-20, -0.8, 0.55, 88), (-14, -0.3, 0.42, 76),
-                 (-9, 0, 0.26, 50), (-5, 0, 0.12, 22), (-2, 0, 0, 0)], 18)
+        s.curve([(-27, 0, 0, 90), (-26, 0, 0.35, 90), (-23, 0, 0.56, 90), (-18, 0, 0.5, 86), (-12, 0, 0.3, 60),
+                 (-7, 0, 0.14, 25), (-3.5, 0, 0.06, 6), (0, 0, 0, 0)], 18)
         petals.append(s.moved(turn))
-    # From the stem to the point: broad, turned onto the edge while it slides and is lifted.
-    for x, y, turn, size in ((39, 19, 24, 1.0), (23, 39, 62, 0.9), (-39, -18, 204, 1.0), (-23, -39, 243, 0.85),
+    # From the stem to the point: set down near the edge, turned to the broad side as it is pressed, and back onto the
+    # edge while it slides and is lifted.
+    for x, y, turn, size in ((43, 18, 20, 1.0), (23, 41, 62, 0.9), (-43, -17, 200, 1.0), (-23, -41, 243, 0.85),
                              (-43, 7, 172, 0.8), (44, -5, -9, 0.8)):
         s = Stroke("leaf", double_loaded("indigo", "gamboge"))
-        s.curve([(-13, 0, 0, 90), (-11, 0, 0.3, 90), (-5, 1.2, 0.55, 92), (3, 2.2, 0.5, 78), (11, 1.8, 0.3, 48),
-                 (18, 0.4, 0.12, 22), (24, -0.8, 0, 8)], 20)
+        s.curve([(-13, 0, 0, 8), (-11, 0.3, 0.22, 24), (-8, 0.9, 0.42, 52), (-3, 1.7, 0.55, 78), (4, 2, 0.48, 80),
+                 (11, 1.6, 0.28, 50), (18, 0.4, 0.1, 18), (24, -0.8, 0, 0)], 20)
         leaves.append(s.moved(turn, size, x, y))
     for k in range(6):
         s = Stroke("comma", double_loaded("cinnabar", "titanium-white"))
-        s.curve([(-4, 0, 0, 90), (-3.4, 0, 0.4, 90), (-1, 0.2, 0.32, 76), (1.6, 0.7, 0.18, 44), (4, 1.5, 0.08, 8),
-                 (6.4, 2.6, 0, -22)], 10)
+        s.curve([(-4, 0, 0, 90), (-3.8, 0, 0.35, 90), (-2.5, 0, 0.5, 90), (-0.5, 0, 0.42, 75), (2, 0.1, 0.28, 40),
+                 (5, 0.3, 0.16, 8), (8.5, 0.6, 0.05, 0), (10, 0.8, 0, 0)], 10)
         a = math.radians(60 * k + 38)
         commas.append(s.moved(60 * k + 38, 1, 26 * math.cos(a), 26 * math.sin(a)))
     return [({"brush": "flat-12*0.8", "ink": "indigo", **place}, leaves),
