@@ -6,6 +6,7 @@
 
 #include "core/ease.h"
 #include "core/random.h"
+#include "haptic/servo.h"
 
 namespace tuft::haptic {
 namespace {
@@ -183,6 +184,73 @@ TEST(Law, NoHairTakesMoreThanTheTankLends) {
             }
             EXPECT_GE(least, -kLent) << limits.name << " " << seed;
         }
+}
+
+/// omega.6 with motors in its wrist.
+DeviceLimits with_torque(double most) {
+    DeviceLimits limits = device_preset("omega.6");
+    limits.max_torque = most;
+    return limits;
+}
+
+// The wrist turns hair that is a spring of 0.15 N·m/rad to the hand, there and back.
+TEST(Law, AnArmWithTorqueGivesTheMomentOfTheHairUpToItsLimit) {
+    constexpr double kSpring = 0.01, kMost = 0.05, kTurn = 0.4;  // N·m/rad of the hair, N·m, rad
+    for (const double most : {kMost, 0.0}) {
+        const LawOptions options{.limits = with_torque(most), .gain = 15};
+        LawState state;
+        HairAnswer hair{.force = {0, 0, 1e-3}, .touching = true};
+        double greatest = 0, port = 0, least = 0;  // N·m; J
+        Vec3 torque{0};
+        for (int i = 0; i <= 1000; ++i) {
+            const double before = kTurn * smooth_step(1 - std::abs(i - 501) / 500.0);
+            const double turn = kTurn * smooth_step(1 - std::abs(i - 500) / 500.0);
+            port -= torque.y * (turn - before);
+            least = std::min(least, port);
+            hair.moment = {0, -kSpring * turn, 0};
+            hair.stored = 0.5 * kSpring * turn * turn;
+            torque = step_law(options, state, {.rotation = glm::angleAxis(turn, Vec3{0, 1, 0}), .hair = &hair}).torque;
+            greatest = std::max(greatest, glm::length(torque));
+            if (i == 250) {  // half the turn in: the moment of the hair, unclamped
+                EXPECT_NEAR(torque.y, most > 0 ? -15 * kSpring * turn : 0, 1e-9);
+            }
+        }
+        EXPECT_NEAR(greatest, most, 1e-12);  // none without motors; at the whole turn the hair would give 0.06 N·m
+        EXPECT_GE(least, -1e-6);
+    }
+}
+
+// A moment that keeps turning the wrist has what the tank begins with and lends, and no more.
+TEST(Law, ATorqueThatWorksOnItsOwnRunsOutOfEnergy) {
+    const LawOptions options{.limits = with_torque(0.05), .gain = 15};
+    LawState state;
+    const HairAnswer hair{.force = {0, 0, 1e-3}, .moment = {0, 2e-3, 0}, .stored = 1, .touching = true};
+    double given = 0, turn = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const Vec3 torque =
+            step_law(options, state, {.rotation = glm::angleAxis(turn, Vec3{0, 1, 0}), .hair = &hair}).torque;
+        const double next = turn + 2e-3 * std::min(1.0, i / 200.0);  // rad, 2 rad/s in the end
+        given += torque.y * (next - turn);
+        turn = next;
+    }
+    EXPECT_GT(given, 0);
+    EXPECT_LT(given, 40e-6);  // J: e_0, and 7 µJ that a landing on omega.6 lends; the hair would give 120 mJ
+}
+
+TEST(Servo, TorqueLeavesInTheFrameOfTheArm) {
+    Servo servo({.limits = with_torque(0.05), .gain = 15});
+    ServoControl control;
+    control.workspace.rotation = glm::angleAxis(std::acos(-1.0) / 2, Vec3{0, 0, 1});
+    const DeviceState still;
+    ServoOutput out;
+    for (std::uint64_t tick = 1; tick < 700; ++tick) {
+        HairAnswer hair{.pose = servo.begin(tick, &still, control), .touching = true};
+        hair.force = {0, 0, 1e-3};
+        hair.moment = {1e-4, 0, 0};
+        out = servo.finish(&hair);
+    }
+    // World x is minus y of an arm that is turned by a quarter.
+    EXPECT_LT(glm::distance(out.command.torque, Vec3{0, -15e-4, 0}), 1e-9);
 }
 
 TEST(Law, TheRootKeepsToTheFreeSideOfItsBounds) {
