@@ -120,6 +120,22 @@ struct Session {
     LoopStatus status;
 };
 
+/// Whether the loop shows that the server has gone wrong, after there was force. A flood shows nothing.
+bool is_seen(ServerFault fault, const LoopStatus& status) {
+    switch (fault) {
+        case ServerFault::none:
+            return true;
+        case ServerFault::jumps:
+            return status.fault == Fault::jump;
+        case ServerFault::silent:  // for 30 ms; then force comes back over half a second
+            return status.pass < 1 && status.periods > 2000;
+        case ServerFault::floods:
+            return status.periods > 3000;
+        default:
+            return status.fault == Fault::silence;
+    }
+}
+
 // Presses the tuft by a server that goes wrong after 2.5 s, and closes in mid-stroke. Deadlines of threads are no
 // matter here: they are judged in virtual time (safety_test.cpp).
 Session paint_over_the_wire(ServerFault fault) {
@@ -140,10 +156,13 @@ Session paint_over_the_wire(ServerFault fault) {
                 session.strokes += cut.ends;
             }
         };
-        for (int i = 0; i < 400; ++i) {
+        bool seen = false;
+        for (int i = 0; i < 3000 && !seen; ++i) {
             std::this_thread::sleep_for(10ms);
             take();
-            session.had_force = session.had_force || glm::length(loop.status().force) > 0.02;
+            session.status = loop.status();
+            session.had_force = session.had_force || glm::length(session.status.force) > 0.02;
+            seen = session.had_force && session.poses > 100 && is_seen(fault, session.status);
         }
         loop.stop();
         take();
