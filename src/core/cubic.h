@@ -9,7 +9,8 @@
 namespace tuft {
 
 /// Returns the cubic with values p0, p1 and slopes m0, m1 at the ends of a piece of length h, at t in [0, 1] of it:
-/// p0 + (p1 − p0)(3t² − 2t³) + h (m0 (t³ − 2t² + t) + m1 (t³ − t²)). p0 to the bit at t = 0.
+/// p0 + (p1 − p0)(3t² − 2t³) + h (m0 (t³ − 2t² + t) + m1 (t³ − t²)). p0 to the bit at t = 0; p1 within rounding at
+/// t = 1.
 template <class T>
 T hermite(const T& p0, const T& p1, const T& m0, const T& m1, double h, double t) {
     const double t2 = t * t, t3 = t2 * t;

@@ -30,24 +30,29 @@ ocio::GroupTransformRcPtr from_srgb(ColourSpace space) {
     return group;
 }
 
-/// The product of the matrices of a chain without loss; curves at its ends are those of stored values.
+/// The one matrix of a chain without loss. Curves at its ends are those of stored values. A chain of another version of
+/// the library that has no matrix, several or offsets is refused.
 Matrix3 matrix_of(const ocio::GroupTransformRcPtr& chain, ocio::TransformDirection direction) {
     const ocio::ConstProcessorRcPtr processor = ocio::Config::CreateRaw()->getProcessor(chain, direction);
     const ocio::GroupTransformRcPtr parts =
         processor->getOptimizedProcessor(ocio::OPTIMIZATION_LOSSLESS)->createGroupTransform();
-    Matrix3 product{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    Matrix3 found{};
     int n_matrices = 0;
     for (int part = 0; part < parts->getNumTransforms(); ++part) {
         const auto matrix = ocio::DynamicPtrCast<ocio::MatrixTransform>(parts->getTransform(part));
         if (!matrix) continue;
         std::array<double, 16> rows{};
+        std::array<double, 4> offsets{};
         matrix->getMatrix(rows.data());
+        matrix->getOffset(offsets.data());
+        if (matrix->getDirection() != ocio::TRANSFORM_DIR_FORWARD || offsets != std::array<double, 4>{})
+            throw ocio::Exception("a conversion between colour spaces is no plain matrix");
         for (std::size_t i = 0; i < 3; ++i)
-            for (std::size_t j = 0; j < 3; ++j) product[i][j] = rows[4 * i + j];
+            for (std::size_t j = 0; j < 3; ++j) found[i][j] = rows[4 * i + j];
         ++n_matrices;
     }
-    if (n_matrices > 1) throw ocio::Exception("a chain of colour spaces has more than one matrix");
-    return product;
+    if (n_matrices != 1) throw ocio::Exception("a conversion between colour spaces is not one matrix");
+    return found;
 }
 
 }  // namespace

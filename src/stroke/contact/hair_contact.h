@@ -64,9 +64,9 @@ class HairContact {
     /// Draws the footprint hair by hair.
     void draw_hairs(Stamp& stamp, const footprint::TouchingHair& hair, const contact::Result& contact,
                     const MotionTracker& motion, const Wetness& wetness);
-    /// Sets the stamp's film by place across the hair, by the part of it that is closed.
     /// Sets what part of each cell of the bundles touches, and adds it to what touched since it was taken.
     void find_cells(const TuftInHand& tuft, const contact::Result& contact, std::span<const footprint::Trail> trails);
+    /// Sets the stamp's film by place across the hair, by the part of it that is closed.
     void add_tone(Stamp& stamp, const TuftInHand& tuft, const footprint::TouchingHair& hair, const HairShape& shape,
                   const contact::Result& contact, const MotionTracker& motion);
     /// Computes the grid of the stamp and what hair touches at its nodes.
