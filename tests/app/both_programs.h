@@ -25,7 +25,7 @@ struct Painted {
     std::vector<stroke::JournalEntry> journal;
 };
 
-/// The same work by the studio's paint thread and by `tuft`, on a shipped model.
+/// The same work by the studio's paint thread and by `tuft`, on a shipped model, or on one that is named by its path.
 class BothPrograms : public ::testing::Test {
   protected:
     /// Returns the command and the options that say the same.
@@ -50,7 +50,7 @@ class BothPrograms : public ::testing::Test {
         work.model = std::make_unique<stroke::Model>(test::shipped_model(name, kTexels));
         work.document = std::make_unique<stroke::Document>(*work.model);
         work.texture = std::make_unique<Texture>(*work.document, ProgressFn{});
-        work.source = source_folder() + "/models/" + name;
+        work.source = test::model_path(name);
         EXPECT_TRUE(work.autosave.start(project, work.source, {}, *work.document).empty());
         auto painter = std::make_unique<PaintThread>(std::move(work));
         const std::string words = work_on(painter);
@@ -62,7 +62,7 @@ class BothPrograms : public ::testing::Test {
     Painted by_program(const std::string& command, const std::string& name, const std::string& options) {
         const std::string project = folder_ + "/program.tuft";
         std::filesystem::remove(project);
-        const nlohmann::json j = test::tuft(command + " " + source_folder() + "/models/" + name + " --atlas-size " +
+        const nlohmann::json j = test::tuft(command + " " + test::model_path(name).string() + " --atlas-size " +
                                                 std::to_string(kTexels) + " " + options + " --project " + project,
                                             folder_ + "/out.json");
         return {j["canvas_hash"], options, io::Project::open(project).strokes()};

@@ -7,11 +7,16 @@
 namespace tuft::test {
 
 /// A shipped model, unwrapped into `size` texels per side; from the cache that the programs use where it is there.
+/// The file of a shipped model, or the path itself.
+inline std::filesystem::path model_path(const std::string& name) {
+    return std::filesystem::path(source_folder()) / "models" / name;
+}
+
 inline stroke::Model shipped_model(const std::string& name, std::uint32_t size) {
     stroke::ModelOptions options;
     options.cache = stroke::shared_model_cache();
     options.unwrap.size = size;
-    return stroke::prepare_model(io::read_model(source_folder() + "/models/" + name), options);
+    return stroke::prepare_model(io::read_model(model_path(name)), options);
 }
 
 /// A stroke of poses over the top of the model's middle, `length` metres along x.
