@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 /// \file
@@ -22,6 +23,12 @@ template <class T>
 T hermite_slope(const T& p0, const T& p1, const T& m0, const T& m1, double h, double t) {
     const double t2 = t * t;
     return (p1 - p0) * (6 * (t - t2) / h) + m0 * (3 * t2 - 4 * t + 1) + m1 * (3 * t2 - 2 * t);
+}
+
+/// Returns Bernstein's polynomials C(3, k) t^k (1 − t)^{3−k}: the weights of the control points of a Bézier curve at t.
+inline std::array<double, 4> bernstein(double t) {
+    const double s = 1 - t;
+    return {s * s * s, 3 * t * s * s, 3 * t * t * s, t * t * t};
 }
 
 /// Returns the slope at a node of the parabola through it and its neighbours, from the slopes of the chords on both

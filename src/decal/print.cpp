@@ -107,13 +107,6 @@ struct PixelWeights {
     }
 };
 
-Region placed(const Region& region, const PagePlacement& placement) {
-    Region out = region;
-    for (Ring& ring : out)
-        for (Vec2& p : ring) p = placement(p);
-    return out;
-}
-
 /// Clears what is printed outside the film and does not hang together with what is printed inside; `inside` is kNone
 /// outside.
 void drop_islands(PrintImage& image, const std::vector<std::uint32_t>& inside) {
@@ -148,6 +141,13 @@ std::uint8_t byte_of(double part) {
 }
 
 }  // namespace
+
+Region placed(const Region& region, const PagePlacement& placement) {
+    Region out = region;
+    for (Ring& ring : out)
+        for (Vec2& p : ring) p = placement(p);
+    return out;
+}
 
 void spread_colours(ink::AtlasMap<std::uint8_t>& colour, const ink::AtlasMap<float>& coverage, int rings) {
     const std::size_t n = colour.size;

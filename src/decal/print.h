@@ -64,6 +64,9 @@ struct PagePlacement {
     }
 };
 
+/// Returns a region of the panel's plane as it lies on the page.
+Region placed(const Region& region, const PagePlacement& placement);
+
 /// A picture on a page, row 0 at the top.
 struct PrintImage {
     int width = 0, height = 0;

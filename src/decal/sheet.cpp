@@ -293,13 +293,6 @@ void add_lap_lines(const CutFilm& cut, const Piece& piece, const SheetOptions& o
     }
 }
 
-Region placed(const Region& region, const PagePlacement& placement) {
-    Region out = region;
-    for (Ring& ring : out)
-        for (Vec2& p : ring) p = placement(p);
-    return out;
-}
-
 /// The number of an ink among those of the sheet, with which its colour is averaged.
 std::size_t add_ink(const PrintedInk& printed, std::vector<PrintedInk>& inks) {
     const auto same = std::ranges::find_if(inks, [&](const PrintedInk& i) { return is_same_mix(i.mix, printed.mix); });

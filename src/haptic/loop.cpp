@@ -11,6 +11,7 @@
 #include <map>
 #include <thread>
 
+#include "core/system/clock.h"
 #include "core/system/recycled.h"
 #include "haptic/device/exchange.h"
 
@@ -19,12 +20,6 @@ namespace {
 
 constexpr long kPeriodNs = 1'000'000, kWaitNs = 600'000;
 constexpr std::size_t kRecent = 3000;  // periods of the plot
-
-std::int64_t now_ns() {
-    timespec t{};
-    ::clock_gettime(CLOCK_MONOTONIC, &t);
-    return t.tv_sec * 1'000'000'000LL + t.tv_nsec;
-}
 
 timespec timespec_of(std::int64_t ns) {
     return {.tv_sec = ns / 1'000'000'000, .tv_nsec = ns % 1'000'000'000};
@@ -194,14 +189,14 @@ void Loop::State::run_servo() {
     HairAnswer newest;
     bool any = false;
     LawOptions fresh_law;
-    const std::int64_t begin = now_ns();
+    const std::int64_t begin = clock_ns();
     std::int64_t due = begin + kPeriodNs;
     std::uint64_t tick = 0;
     const std::uint64_t allocated = allocations();
     while (running.load(std::memory_order_relaxed)) {
         const timespec until = timespec_of(due);
         ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
-        tick = std::max<std::uint64_t>(tick + 1, static_cast<std::uint64_t>((now_ns() - begin) / kPeriodNs));
+        tick = std::max<std::uint64_t>(tick + 1, static_cast<std::uint64_t>((clock_ns() - begin) / kPeriodNs));
         DeviceState state;
         const bool fresh = device.read(state);
         const bool release = released.exchange(false);  // before the control that no longer asks for the emergency
@@ -217,7 +212,7 @@ void Loop::State::run_servo() {
         }
         const ServoOutput out = servo.finish(any ? &newest : nullptr);
         device.send(out.command);
-        now.cycle.add(1e-9 * static_cast<double>(now_ns() - due));
+        now.cycle.add(1e-9 * static_cast<double>(clock_ns() - due));
         now.allocations = allocations() - allocated + counts.solver_allocations.load(std::memory_order_relaxed);
         report(now, out, asked, fresh ? &state : nullptr);
         remember_force(out.force);
@@ -231,7 +226,7 @@ void Loop::State::run_servo() {
                                  .answer = any ? newest.pose.tick : 0,
                                  .force = out.force});
         }
-        due = std::max(due + kPeriodNs, begin + (now_ns() - begin) / kPeriodNs * kPeriodNs);
+        due = std::max(due + kPeriodNs, begin + (clock_ns() - begin) / kPeriodNs * kPeriodNs);
     }
     device.send({});
     now.running = now.engaged = false;

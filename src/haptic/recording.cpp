@@ -1,7 +1,6 @@
 #include "haptic/recording.h"
 
 #include <fmt/format.h>
-#include <time.h>
 
 #include <algorithm>
 #include <array>
@@ -13,6 +12,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/system/clock.h"
 
 namespace tuft::haptic {
 namespace {
@@ -23,12 +23,6 @@ constexpr std::size_t kNumbers = 16, kNumbersAdded = 18, kLongestLine = 1000, kM
 
 std::uint64_t whole(double value) {
     return value >= 0 && value < 1e15 ? static_cast<std::uint64_t>(value) : 0;  // also for NaN
-}
-
-std::int64_t now_ns() {
-    timespec t{};
-    ::clock_gettime(CLOCK_MONOTONIC, &t);
-    return t.tv_sec * 1'000'000'000LL + t.tv_nsec;
 }
 
 }  // namespace
@@ -126,8 +120,8 @@ ReplayDevice::ReplayDevice(const DeviceLimits& limits, std::vector<RecordedPerio
     : limits_(limits), periods_(std::move(periods)) {}
 
 bool ReplayDevice::read(DeviceState& state) noexcept {
-    if (begin_ == 0) begin_ = now_ns();
-    const auto tick = static_cast<std::uint64_t>((now_ns() - begin_) / 1'000'000);
+    if (begin_ == 0) begin_ = clock_ns();
+    const auto tick = static_cast<std::uint64_t>((clock_ns() - begin_) / 1'000'000);
     bool fresh = false;
     std::size_t next = next_.load();
     while (next < periods_.size() && periods_[next].tick - periods_.front().tick <= tick) {

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/files/files.h"
 #include "core/files/system_message.h"
+#include "core/files/text_file.h"
 #include "core/system/interrupt.h"
 #include "core/text/nesting.h"
 #include "core/text/text.h"
@@ -29,21 +30,12 @@ constexpr const char* kFormat = "tuft variants 1";
 constexpr std::size_t kMaxJson = std::size_t{64} << 20, kMaxResult = std::size_t{1} << 30;
 constexpr const char *kResult = "result.json", *kCoverage = "coverage.bin", *kPicture = "picture.png";
 
-std::string text_of_file(const fs::path& file) {
-    const std::vector<char> bytes = read_file(file, kMaxJson);
-    return {bytes.begin(), bytes.end()};
-}
-
 nlohmann::json json_of_file(const fs::path& file) {
-    const std::string text = text_of_file(file);
+    const std::string text = read_text(file, kMaxJson);
     check_json_nesting(text, file.string());
     nlohmann::json j = nlohmann::json::parse(text, nullptr, false);
     if (!j.is_object()) throw Error(file.string(), "is damaged");
     return j;
-}
-
-void write_text(const fs::path& file, const std::string& text) {
-    write_file(file, text.data(), text.size());
 }
 
 void make_folder(const fs::path& folder) {
@@ -98,7 +90,7 @@ fs::path Jobs::picture(std::size_t i) const {
 
 Task Jobs::task(std::size_t i) const {
     const fs::path file = task_file(i);
-    const Task task = task_of_json(text_of_file(file), file.string());
+    const Task task = task_of_json(read_text(file, kMaxJson), file.string());
     if (hash_of(task) != hashes_[i]) throw Error(file.string(), "was changed; write the tasks again");
     return task;
 }
@@ -151,7 +143,7 @@ void Jobs::forget_failure(std::size_t i) const {
     fs::remove(failure_file(i), ec);
 }
 std::string Jobs::failure(std::size_t i) const {
-    const std::string text = text_of_file(failure_file(i));
+    const std::string text = read_text(failure_file(i), kMaxJson);
     return excerpt(text.substr(0, text.find('\n')), 1000);
 }
 

@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/files/files.h"
 #include "core/files/modified_time.h"
+#include "core/geometry/plane_vectors.h"
 #include "core/geometry/sparse_numbering.h"
 #include "core/geometry/types.h"
 #include "core/hash.h"
@@ -27,6 +28,18 @@ Vec3 random_unit(Random& random) {
     const double z = random.uniform(-1, 1), phi = random.uniform(0, 6.283185307179586);
     const double r = std::sqrt(1 - z * z);
     return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+TEST(PlaneVectors, TurningByTheAngleBetweenLeadsFromOneToTheOther) {
+    Random random(5);
+    for (int i = 0; i < 200; ++i) {
+        const Vec2 a(random.uniform(-1, 1), random.uniform(-1, 1)), b(random.uniform(-1, 1), random.uniform(-1, 1));
+        // A dozen roundings of numbers of order one.
+        const Vec2 there = turned(a, angle_between(a, b));
+        EXPECT_NEAR(cross(there, b), 0, 1e-14);
+        EXPECT_GE(glm::dot(there, b), 0);
+        EXPECT_EQ(cross(a, b), -cross(b, a));
+    }
 }
 
 TEST(ParallelTransport, TakesOneDirectionToTheOtherAndKeepsLengthsAndAngles) {

@@ -49,6 +49,17 @@ TEST(Cubic, MeetsValueAndSlopeOfTheNextPieceOfAnotherLength) {
     }
 }
 
+TEST(Cubic, OfABezierCurveHasAThirdOfItsSlopesBetweenControlPoints) {
+    const double p0 = 0.3, p1 = 1.1, m0 = -2, m1 = 0.7, h = 1.5;
+    const double control[] = {p0, p0 + h * m0 / 3, p1 - h * m1 / 3, p1};
+    for (int i = 0; i <= 10; ++i) {
+        const std::array<double, 4> b = bernstein(i / 10.0);
+        double value = 0;
+        for (std::size_t k = 0; k < 4; ++k) value += b[k] * control[k];
+        EXPECT_NEAR(value, hermite(p0, p1, m0, m1, h, i / 10.0), kRounding);
+    }
+}
+
 TEST(Cubic, HasTheSlopeOfAParabolaThroughThreeNodes) {
     const auto parabola = [](double x) { return 2 - 3 * x + 4 * x * x; };
     const double x0 = 0.2, x1 = 0.5, x2 = 1.3;

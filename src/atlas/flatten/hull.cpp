@@ -3,14 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/geometry/plane_vectors.h"
+
 namespace tuft::atlas {
-namespace {
-
-double cross(const Vec2& o, const Vec2& a, const Vec2& b) {
-    return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
-}
-
-}  // namespace
 
 std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
     std::sort(points.begin(), points.end(),
@@ -18,12 +13,12 @@ std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
     std::vector<Vec2> hull(2 * points.size());
     std::size_t k = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        while (k >= 2 && cross(hull[k - 2], hull[k - 1], points[i]) <= 0) --k;
+        while (k >= 2 && cross(hull[k - 1] - hull[k - 2], points[i] - hull[k - 2]) <= 0) --k;
         hull[k++] = points[i];
     }
     const std::size_t lower = k + 1;
     for (std::size_t i = points.size() - 1; i-- > 0;) {
-        while (k >= lower && cross(hull[k - 2], hull[k - 1], points[i]) <= 0) --k;
+        while (k >= lower && cross(hull[k - 1] - hull[k - 2], points[i] - hull[k - 2]) <= 0) --k;
         hull[k++] = points[i];
     }
     hull.resize(k > 1 ? k - 1 : k);

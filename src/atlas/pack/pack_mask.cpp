@@ -7,14 +7,11 @@
 #include <span>
 
 #include "atlas/flatten/hull.h"
+#include "core/geometry/plane_vectors.h"
 #include "core/hash.h"
 
 namespace tuft::atlas {
 namespace {
-
-double turn(const Vec2& o, const Vec2& a, const Vec2& b) {
-    return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
-}
 
 /// The first bit from `i` on that differs from those of `all`, all zeros or all ones; the end where
 /// there is none.
@@ -170,7 +167,7 @@ Shape make_shape(const std::vector<Vec2>& border) {
     Shape shape;
     shape.border = &border;
     for (std::size_t i = 0; i < border.size(); ++i)
-        shape.area += 0.5 * turn(border[0], border[i], border[(i + 1) % border.size()]);
+        shape.area += 0.5 * cross(border[i] - border[0], border[(i + 1) % border.size()] - border[0]);
     const Rectangle box = smallest_rectangle(convex_hull(border));
     shape.extent = box.length;
     shape.angle = -std::atan2(box.s, box.c);

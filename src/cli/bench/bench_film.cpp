@@ -1,12 +1,11 @@
 #include "cli/bench/bench_film.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
 
+#include "core/system/clock.h"
 #include "core/system/parallel.h"
 #include "ink/exchange/transfer.h"
 #include "ink/film/film.h"
@@ -16,12 +15,6 @@ namespace {
 
 constexpr std::size_t kMostTiles = 4096;
 constexpr std::array kInks{"carbon", "cinnabar", "gamboge", "indigo"};
-
-double seconds(clockid_t clock) {
-    timespec t{};
-    ::clock_gettime(clock, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 double median(std::vector<double> v) {
     std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
@@ -65,10 +58,10 @@ struct FilmRun {
     /// Time of a step: the mean of ten and more.
     double step_seconds(clockid_t clock) {
         params.shortest_step = 0;
-        const double start = seconds(clock);
+        const double start = clock_seconds(clock);
         std::size_t steps = 0;
         while (steps < 10) steps += film.advance(canvas, 60 * dt, params).steps;
-        return (seconds(clock) - start) / static_cast<double>(steps);
+        return (clock_seconds(clock) - start) / static_cast<double>(steps);
     }
 
     ink::WetFilm& film;
@@ -118,12 +111,12 @@ double transfer_seconds(const stroke::Model& model, std::size_t tiles) {
     ink::NodeContents given{};
     std::vector<double> runs;
     for (int i = 0; i < 9; ++i) {
-        const double start = seconds(CLOCK_THREAD_CPUTIME_ID);
+        const double start = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
         for (std::uint32_t slot = 0; slot < tiles; ++slot) {
             ink::hat_basis(hats, places, coverage);
             ink::transfer(canvas, {{slot, coverage, model.texels.tiles[slot].area, ds}, places, hats}, p, given);
         }
-        runs.push_back(seconds(CLOCK_THREAD_CPUTIME_ID) - start);
+        runs.push_back(clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start);
     }
     return median(runs) / static_cast<double>(tiles * atlas::kTileTexels);
 }

@@ -17,6 +17,7 @@
 #include "cli/steps/steps.h"
 #include "core/error.h"
 #include "core/files/files.h"
+#include "core/files/text_file.h"
 #include "core/system/build_facts.h"
 #include "core/text/nesting.h"
 #include "core/text/xml_text.h"
@@ -262,10 +263,6 @@ void add_facts(json& j) {
     j["load"] = load;
     j["date"] = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
     for (const auto& [name, version] : facts.libraries) j["libraries"][name] = version;
-}
-
-void write_text(const fs::path& file, const std::string& text) {
-    write_file(file, text.data(), text.size());
 }
 
 }  // namespace

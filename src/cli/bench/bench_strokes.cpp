@@ -1,13 +1,12 @@
 #include "cli/bench/bench_strokes.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
 #include "brush/tuft/tuft.h"
+#include "core/system/clock.h"
 #include "core/system/cpu_time.h"
 #include "core/text/units.h"
 #include "ink/exchange/deposit.h"
@@ -91,9 +90,7 @@ ProgressFn timed(const ProgressFn& progress, MeasuredModel& m) {
 }  // namespace
 
 double wall_seconds() {
-    timespec t{};
-    ::clock_gettime(CLOCK_MONOTONIC, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+    return clock_seconds();
 }
 
 double quantile_of(std::vector<double> values, double q) {

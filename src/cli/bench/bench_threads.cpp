@@ -1,7 +1,6 @@
 #include "cli/bench/bench_threads.h"
 
 #include <fmt/format.h>
-#include <time.h>
 
 #include <array>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include "cli/bench/bench_film.h"
 #include "cli/bench/bench_strokes.h"
 #include "cli/steps/steps.h"
+#include "core/system/clock.h"
 #include "core/system/parallel.h"
 
 namespace tuft::cli {
@@ -31,9 +31,7 @@ struct Workload {
 
 /// CPU time of all threads of this process, seconds.
 double all_cpu_seconds() {
-    timespec t{};
-    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+    return clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 double seconds_of(const std::function<void()>& work) {

@@ -1,20 +1,14 @@
 #include "haptic/device/simulated.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include "core/system/clock.h"
 
 namespace tuft::haptic {
 namespace {
 
 constexpr double kWatchdog = 0.02;  // s after the last command, after which the motors are off
-
-double wall_seconds() {
-    timespec t{};
-    ::clock_gettime(CLOCK_MONOTONIC, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 }  // namespace
 
@@ -74,10 +68,10 @@ void SimulatedArm::command(const DeviceCommand& command, double time) {
     sent_[n_sent_++ % sent_.size()] = {std::max(last, time + options_.delay + jitter), command.force};
 }
 
-SimulatedDevice::SimulatedDevice(SimulatedArm arm) : arm_(std::move(arm)), begin_(wall_seconds()) {}
+SimulatedDevice::SimulatedDevice(SimulatedArm arm) : arm_(std::move(arm)), begin_(clock_seconds()) {}
 
 double SimulatedDevice::now() const {
-    return wall_seconds() - begin_;
+    return clock_seconds() - begin_;
 }
 
 bool SimulatedDevice::read(DeviceState& state) noexcept {

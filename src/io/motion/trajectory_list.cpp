@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/files/extension.h"
 #include "core/files/files.h"
+#include "core/files/text_file.h"
 #include "core/text/nesting.h"
 #include "io/motion/motion_files.h"
 #include "io/motion/stroke_description.h"
@@ -65,10 +66,6 @@ std::vector<stroke::RecordedStroke> strokes_of_list(const json& file) {
     }
     for (const stroke::RecordedStroke& s : strokes) stroke::check_samples(s);
     return strokes;
-}
-
-void write_text(const std::filesystem::path& path, const std::string& text) {
-    write_file(path, text.data(), text.size());
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/files/extension.h"
 #include "core/files/files.h"
+#include "core/files/text_file.h"
 #include "io/export/export.h"
 
 namespace fs = std::filesystem;
@@ -42,10 +43,6 @@ void tell_apart(std::vector<std::string>& names, std::size_t longest) {
             name = plain.substr(0, std::min(plain.size(), longest - number.size())) + number;
         }
     }
-}
-
-void write_text(const fs::path& path, const std::string& text) {
-    write_file(path, text.data(), text.size());
 }
 
 }  // namespace

@@ -5,16 +5,13 @@
 #include <polyclipping/clipper.hpp>
 #include <utility>
 
+#include "core/geometry/plane_vectors.h"
 #include "core/geometry/segment.h"
 
 namespace tuft::io {
 namespace {
 
 namespace clip = ClipperLib;
-
-double cross(const Vec2& a, const Vec2& b) {
-    return a.x * b.y - a.y * b.x;
-}
 
 /// Metres to the grid that Clipper counts in. Its products stay within 64 bits up to 2³⁰; a power
 /// of two, so that a shape in another size has the same rings.

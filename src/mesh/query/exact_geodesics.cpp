@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/plane_vectors.h"
+
 namespace tuft::mesh {
 namespace {
 
@@ -15,9 +17,6 @@ constexpr std::size_t kFewWindows = 2000;  // below which their number is no sig
 constexpr double kDense = 4;               // over the mean of the area that there may be near the origin
 constexpr std::size_t kMostFaces = 64;     // round a vertex
 
-double cross(const Vec2& a, const Vec2& b) {
-    return a.x * b.y - a.y * b.x;
-}
 /// a turned by the angle of b, and by its negative; |b| = 1.
 Vec2 turned(const Vec2& a, const Vec2& b) {
     return {a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x};

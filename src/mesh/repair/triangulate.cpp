@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/plane_vectors.h"
+
 namespace tuft::mesh {
 namespace {
-
-/// Twice the signed area of a 2D triangle.
-double cross2(const Vec2& a, const Vec2& b, const Vec2& c) {
-    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
 
 /// Sum of cross products of consecutive corners (Newell): twice the vector area.
 Vec3 newell(std::span<const Vec3> corners) {
@@ -90,7 +87,9 @@ class EarClipper {
         }
     }
 
-    double bend(std::uint32_t i) const { return cross2(points_[previous_[i]], points_[i], points_[next_[i]]); }
+    double bend(std::uint32_t i) const {
+        return cross(points_[i] - points_[previous_[i]], points_[next_[i]] - points_[previous_[i]]);
+    }
     bool is_convex(std::uint32_t i) const { return bend(i) > 0; }
 
     /// No other corner lies in the triangle; corners at one of its three places do not count.
@@ -103,7 +102,7 @@ class EarClipper {
             --budget_.tests;
             const Vec2 p = points_[r];
             if (r == before || r == i || r == after || p == a || p == b || p == c) continue;
-            if (cross2(a, b, p) >= 0 && cross2(b, c, p) >= 0 && cross2(c, a, p) >= 0) return false;
+            if (cross(b - a, p - a) >= 0 && cross(c - b, p - b) >= 0 && cross(a - c, p - c) >= 0) return false;
         }
         return true;
     }

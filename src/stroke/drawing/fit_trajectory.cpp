@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "core/ease.h"
+#include "core/geometry/plane_vectors.h"
 #include "core/hat.h"
 #include "core/system/interrupt.h"
 #include "stroke/drawing/plane_ink.h"
@@ -82,14 +83,6 @@ Vec2 heading(const std::vector<Station>& s, std::size_t i, int step) {
         if (glm::length(d) > 1e-9) return glm::normalize(d);
     }
     return Vec2{0};
-}
-
-double angle_between(const Vec2& a, const Vec2& b) {
-    return std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
-}
-
-Vec2 turned(const Vec2& v, double angle) {
-    return {std::cos(angle) * v.x - std::sin(angle) * v.y, std::sin(angle) * v.x + std::cos(angle) * v.y};
 }
 
 }  // namespace

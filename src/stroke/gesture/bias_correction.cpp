@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cubic.h"
 #include "core/error.h"
 
 namespace tuft::stroke {
@@ -68,11 +69,6 @@ Point at(const Path& p, double part) {
 int n_clusters(double length) {
     const double n = std::round(2 * length / kPieceLength) - 1;
     return static_cast<int>(std::clamp(n, 1.0, static_cast<double>(kMostPieces)));
-}
-
-std::array<double, 4> bernstein(double t) {
-    const double s = 1 - t;
-    return {s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t};
 }
 
 // What the writer did in piece j of n.

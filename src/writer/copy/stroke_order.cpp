@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "core/geometry/plane_vectors.h"
 #include "core/text/units.h"
 #include "writer/gesture/stroke_line.h"
 
@@ -72,7 +73,7 @@ Vec2 leaving(const Skeleton& s, const PieceEnd& e) {
 }
 
 double turn_between(const Vec2& in, const Vec2& on) {
-    return std::abs(std::atan2(in.x * on.y - in.y * on.x, glm::dot(in, on)));
+    return std::abs(angle_between(in, on));
 }
 
 /// Joins pieces through junctions.

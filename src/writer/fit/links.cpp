@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/geometry/plane_vectors.h"
 #include "writer/fit/writer.h"
 
 namespace tuft::writer {
@@ -25,10 +26,6 @@ constexpr std::size_t kEndStations = 3;          // of a direction
 Vec2 unit_from(const Vec2& d) {
     const double size = glm::length(d);
     return size > 1e-9 ? d / size : Vec2(0);
-}
-
-double angle_between(const Vec2& a, const Vec2& b) {
-    return std::abs(std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b)));
 }
 
 /// Rounds corners: a Gaussian over the path, ends fixed.
@@ -66,7 +63,7 @@ std::vector<Station> trim_head(const std::vector<Station>& s) {
     const Vec2 way = s[ahead + kEndStations].centre - s[ahead].centre;
     std::size_t first = 0;
     for (double off = 0; first + 1 < ahead && off < kCue; ++first) {
-        if (angle_between(s[first + 2].centre - s[first].centre, way) < kAside) break;
+        if (std::abs(angle_between(s[first + 2].centre - s[first].centre, way)) < kAside) break;
         off += glm::distance(s[first + 1].centre, s[first].centre);
     }
     return {s.begin() + static_cast<std::ptrdiff_t>(first), s.end()};
@@ -108,8 +105,9 @@ bool is_drawn(const std::vector<Station>& link, const std::vector<std::vector<St
     const std::vector<Station>& before = strokes[next - 1];
     const Vec2 chord = entry.front().centre - before.back().centre;
     const double gap = glm::length(chord);
-    const double turn = gap > 1e-9 ? angle_between(out_of(before), chord) + angle_between(chord, into(entry))
-                                   : angle_between(out_of(before), into(entry));
+    const double turn =
+        gap > 1e-9 ? std::abs(angle_between(out_of(before), chord)) + std::abs(angle_between(chord, into(entry)))
+                   : std::abs(angle_between(out_of(before), into(entry)));
     const double tight = turn > kFlowing ? kTightest * turn : 0;
     if (gap < tight || gap > style.link * (1 - kTurnedBack * turn / (2 * std::numbers::pi))) return false;
     const auto crossing = std::count_if(link.begin(), link.end(), [&](const Station& station) {

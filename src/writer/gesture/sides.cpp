@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/geometry/plane_vectors.h"
 #include "core/text/units.h"
 
 namespace tuft::writer {
@@ -20,10 +21,6 @@ constexpr double kArm = 36;           // units from a corner at which the width 
 constexpr double kCornerReach = 32;   // units along the path that a corner is moved with
 constexpr double kMostPush = 45;      // units
 constexpr double kAreaStep = 12;      // units between places of an area: between knots a line may bend
-
-Vec2 turned(const Vec2& v, double angle) {
-    return {std::cos(angle) * v.x - std::sin(angle) * v.y, std::sin(angle) * v.x + std::cos(angle) * v.y};
-}
 
 bool contains(std::span<const Ring> rings, const Vec2& p) {
     int winding = 0;

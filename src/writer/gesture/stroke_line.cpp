@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/cubic.h"
+#include "core/geometry/plane_vectors.h"
 #include "core/text/units.h"
 
 namespace tuft::writer {
@@ -26,10 +27,6 @@ constexpr std::array<CodeRange, 7> kCodes{{{'H', -24, 20},
                                            {'P', -168, -102},
                                            {'S', -102, -72},
                                            {'N', -72, -24}}};
-
-double angle_between(const Vec2& a, const Vec2& b) {
-    return std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
-}
 
 std::vector<Vec2> resampled(std::span<const Vec2> line, double apart) {
     std::vector<double> along{0};

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/files/files.h"
 #include "core/files/path_fault.h"
+#include "core/files/text_file.h"
 #include "io/font/font.h"
 #include "io/font/installed_fonts.h"
 #include "writer/glyphs/outline_font.h"
@@ -21,11 +22,6 @@ namespace {
 
 constexpr std::size_t kMostGlyphBytes = std::size_t{1} << 20, kMostBookBytes = std::size_t{512} << 20;
 
-std::string text_of(const fs::path& path, std::size_t most) {
-    const std::vector<char> bytes = read_file(path, most);
-    return {bytes.data(), bytes.size()};
-}
-
 /// A file of each character.
 class Folder : public GlyphSource {
   public:
@@ -35,9 +31,9 @@ class Folder : public GlyphSource {
         std::error_code none;
         if (const fs::path json = path_ / (utf8_of(code) + ".json");
             code > 0x20 && code != '/' && fs::exists(json, none))
-            return parse_hanzi_json(text_of(json, kMostGlyphBytes), code, json.string());
+            return parse_hanzi_json(read_text(json, kMostGlyphBytes), code, json.string());
         if (const fs::path svg = path_ / fmt::format("{:05x}.svg", static_cast<unsigned>(code)); fs::exists(svg, none))
-            return parse_kanji_svg(text_of(svg, kMostGlyphBytes), code, svg.string());
+            return parse_kanji_svg(read_text(svg, kMostGlyphBytes), code, svg.string());
         return std::nullopt;
     }
 
@@ -48,7 +44,7 @@ class Folder : public GlyphSource {
 /// `graphics.txt`: a JSON object a line. Lines are parsed when they are asked for.
 class Book : public GlyphSource {
   public:
-    explicit Book(const fs::path& path) : name_(path.string()), text_(text_of(path, kMostBookBytes)) {
+    explicit Book(const fs::path& path) : name_(path.string()), text_(read_text(path, kMostBookBytes)) {
         static constexpr std::string_view kKey = "\"character\":\"";
         for (std::size_t begin = 0, number = 1; begin < text_.size(); ++number) {
             const std::size_t end = std::min(text_.find('\n', begin), text_.size());
@@ -82,7 +78,7 @@ class Book : public GlyphSource {
 class LineFont : public GlyphSource {
   public:
     explicit LineFont(const fs::path& path) {
-        LineFontGlyphs font = parse_line_font(text_of(path, kMostBookBytes), path.string());
+        LineFontGlyphs font = parse_line_font(read_text(path, kMostBookBytes), path.string());
         for (Glyph& g : font.glyphs) glyphs_.emplace(g.code, std::move(g));
         kerning_ = std::move(font.kerning);
     }

@@ -5,20 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cubic.h"
+
 namespace tuft::brush::macro {
 
-std::array<double, 4> basis(double t) {
-    const double s = 1 - t;
-    return {s * s * s, 3 * t * s * s, 3 * t * t * s, t * t * t};
-}
-
 double value(const Spline& spline, double t) {
-    const std::array<double, 4> b = basis(t);
+    const std::array<double, 4> b = bernstein(t);
     return b[0] * spline[0] + b[1] * spline[1] + b[2] * spline[2] + b[3] * spline[3];
 }
 
 Vec3 value(const CurveSpline& spline, double t) {
-    const std::array<double, 4> b = basis(t);
+    const std::array<double, 4> b = bernstein(t);
     return b[0] * spline[0] + b[1] * spline[1] + b[2] * spline[2] + b[3] * spline[3];
 }
 
@@ -71,7 +68,7 @@ Eigen::Vector3d eigen(const Vec3& v) {
 
 /// Rows of one node: its place is B x, with x = (K0, K1, handle), relative to the root and over the length.
 Eigen::Matrix<double, 3, 7> place_rows(double t, const Vec3& direction) {
-    const std::array<double, 4> b = basis(t);
+    const std::array<double, 4> b = bernstein(t);
     Eigen::Matrix<double, 3, 7> rows = Eigen::Matrix<double, 3, 7>::Zero();
     rows.block<3, 3>(0, 0).diagonal().setConstant(b[0]);
     rows.block<3, 3>(0, 3).diagonal().setConstant(b[1]);
@@ -95,7 +92,7 @@ Spline fit_spline(const ValueFit& f) {
     Quadratic q{Eigen::MatrixXd::Zero(count, count), Eigen::MatrixXd::Zero(rows, count), Eigen::VectorXd::Zero(count),
                 Eigen::VectorXd::Zero(rows)};
     for (std::size_t i = 0; i < f.t.size(); ++i) {
-        const std::array<double, 4> b = basis(f.t[i]);
+        const std::array<double, 4> b = bernstein(f.t[i]);
         const Eigen::Map<const Eigen::VectorXd> v(b.data(), count);
         const double held = root * b[3];
         q.h += f.weight[i] * v * v.transpose();

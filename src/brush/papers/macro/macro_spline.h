@@ -16,9 +16,6 @@ namespace tuft::brush::macro {
 using Spline = std::array<double, 4>;
 using CurveSpline = std::array<Vec3, 4>;  ///< metres
 
-/// Returns the four basis functions B_k(t) = C(3, k) t^k (1 − t)^{3−k}.
-std::array<double, 4> basis(double t);
-
 /// Return the value of a spline at t, 0–1 from the ferrule to the tip.
 double value(const Spline& spline, double t);
 Vec3 value(const CurveSpline& spline, double t);

@@ -2,15 +2,11 @@
 
 #include <algorithm>
 
+#include "core/cubic.h"
+
 namespace tuft::brush {
 
 namespace {
-
-/// Cubic Bernstein polynomials at v.
-std::array<double, 4> bernstein(double v) {
-    const double w = 1 - v;
-    return {w * w * w, 3 * v * w * w, 3 * v * v * w, v * v * v};
-}
 
 /// A section over the broad side: F(x, y) = base + y across.
 struct Row {
