@@ -96,7 +96,7 @@ TrialReport run_trial(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface
 }
 
 int periods_to_stop(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface, const HandPath& path,
-                    const TrialOptions& options, TrialFault trouble, double from) {
+                    const TrialOptions& options, TrialFault fault, double from) {
     constexpr int kLongest = 100;
     SimulatedArm arm(options.law.limits, path, {.hand = options.hand, .seed = options.seed});
     HairSolver solver(tuft, surface, options.solver);
@@ -108,11 +108,8 @@ int periods_to_stop(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface, 
         arm.advance(time);
         DeviceState state = arm.measure();
         const bool wrong = tick >= begin;
-        if (wrong && trouble == TrialFault::not_finite) state.position.x = std::nan("");
-        if (wrong && trouble == TrialFault::jump) state.position.x += 0.05;
-        const bool heard = !wrong || trouble != TrialFault::silence;
-        const ServoControl control{.paused = wrong && trouble == TrialFault::pause,
-                                   .emergency = wrong && trouble == TrialFault::emergency};
+        ServoControl control;
+        const bool heard = !wrong || make_fault(fault, state, control);
         const RootPose pose = servo.begin(tick, heard ? &state : nullptr, control);
         HairAnswer answer;
         if (servo.engaged()) answer = solver.solve(pose);

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "haptic/arm_check.h"
 #include "haptic/device/simulated.h"
 #include "haptic/hair_solver.h"
 #include "haptic/servo.h"
@@ -78,15 +79,10 @@ struct TrialReport {
 TrialReport run_trial(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface, const HandPath& path,
                       const TrialOptions& options);
 
-/// What goes wrong in `periods_to_stop`.
-enum class TrialFault { silence, not_finite, jump, pause, emergency };
-inline constexpr TrialFault kTrialFaults[] = {TrialFault::silence, TrialFault::not_finite, TrialFault::jump,
-                                              TrialFault::pause, TrialFault::emergency};
-
 /// Runs a trial up to `from`, s, where something goes wrong, and returns after how many periods no force leaves any
 /// more; -1 where there was none before, or it did not end within 100.
 int periods_to_stop(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface, const HandPath& path,
-                    const TrialOptions& options, TrialFault trouble, double from);
+                    const TrialOptions& options, TrialFault fault, double from);
 
 /// Worst of both; counts and hashes added up.
 void merge(TrialReport& into, const TrialReport& from);

@@ -125,6 +125,22 @@ TEST_F(Device, SimulateServesAnArmThatListAndRecordFind) {
     EXPECT_GT(nlohmann::json::parse(ran.out)["periods"], 100);
 }
 
+// A service that the program knows nothing of but the wire. A machine that is too slow for an arm is told so.
+TEST_F(Device, TestChecksTheSafetyOfAnArmThatNobodyHolds) {
+    const Served server(tuft_program(), "device simulate --preset touch --model sheet --port 0 --hands-off");
+    ASSERT_GT(server.port, 0);
+    const test::Ran ran =
+        tuft("device test --model sheet --seconds 0.2 --json --quiet --port " + std::to_string(server.port));
+    const nlohmann::json out = nlohmann::json::parse(ran.out);
+    EXPECT_EQ(ran.status, out["safe"].get<bool>() ? 0 : 1) << ran.err;
+    for (const char* key : {"states_per_s", "count_um", "noise_um", "moved_mm", "check_force_n", "check_step_n",
+                            "ramp_ms", "stop_ms", "late_percent"})
+        EXPECT_TRUE(out[key].is_number()) << key;
+    EXPECT_EQ(out["stop_after_ms"].size(), 5u);
+    EXPECT_LT(out["moved_mm"], 0.01);  // a check moves no arm
+    EXPECT_LE(out["check_force_n"], 0.0201);
+}
+
 // What was felt until then is kept, and one line says what has failed.
 TEST_F(Device, AServerThatDiesEndsARecordingWithWhatThereIs) {
     for (const char* fault : {"dies", "nan"}) {

@@ -13,14 +13,83 @@ TEST(Safety, NoForceTwentyMillisecondsAfterAnyTrouble) {
     const brush::Tuft tuft = tuft_of("wolf-medium");
     const auto path = hand_path(HandMotion::rest, f.place, tuft.preset);
     for (const DeviceLimits& limits : device_presets())
-        for (const TrialFault trouble : kTrialFaults) {
-            const int periods = periods_to_stop(tuft, *f.surface, path, {.law = {.limits = limits}}, trouble, 2.2);
-            EXPECT_GE(periods, 0) << limits.name << " " << static_cast<int>(trouble);
-            EXPECT_LT(periods, 20) << limits.name << " " << static_cast<int>(trouble);
-            if (trouble == TrialFault::not_finite || trouble == TrialFault::jump || trouble == TrialFault::emergency) {
+        for (const TrialFault fault : kTrialFaults) {
+            const int periods = periods_to_stop(tuft, *f.surface, path, {.law = {.limits = limits}}, fault, 2.2);
+            EXPECT_GE(periods, 0) << limits.name << " " << static_cast<int>(fault);
+            EXPECT_LT(periods, 20) << limits.name << " " << static_cast<int>(fault);
+            if (fault == TrialFault::not_finite || fault == TrialFault::jump || fault == TrialFault::emergency) {
                 EXPECT_EQ(periods, 0) << limits.name;
             }
         }
+}
+
+/// Periods of a check of a simulated arm in virtual time.
+ArmCheck checked(SimulatedArm arm, std::uint64_t deaf_from = UINT64_MAX, std::uint64_t deaf_to = 0) {
+    ArmCheck check(arm.limits());
+    for (std::uint64_t tick = 1; tick < 60'000 && !check.done(); ++tick) {
+        arm.advance(static_cast<double>(tick) * kPeriod);
+        const DeviceState state = arm.measure();
+        const bool deaf = tick >= deaf_from && tick < deaf_to;
+        arm.command(check.step(tick, deaf ? nullptr : &state), static_cast<double>(tick) * kPeriod);
+    }
+    return check;
+}
+
+SimulatedArm nobodys(const DeviceLimits& limits) {
+    return SimulatedArm(limits,
+                        [](double) {
+                            return HandTarget{.position = {0.01, 0.02, 0.03}};
+                        },
+                        {.hand = {.mass = 0, .damping = 0, .stiffness = 0}});
+}
+
+// Force comes in half a second, goes within 20 ms of any fault, and moves no arm that hangs still.
+TEST(ArmCheck, AKnownArmThatNobodyHoldsIsSafe) {
+    for (const DeviceLimits& limits : device_presets()) {
+        const ArmCheck check = checked(nobodys(limits));
+        ASSERT_TRUE(check.done());
+        EXPECT_TRUE(check.finding().empty()) << limits.name << check.finding().text();
+        const ArmFigures f = check.figures();
+        EXPECT_EQ(f.states_per_period, 1);
+        EXPECT_LT(f.noise, 1e-12) << limits.name;                  // m, rounding of the mean
+        EXPECT_NEAR(f.greatest_force, 0.02, 1e-9) << limits.name;  // asked for, below the loan of every tank
+        EXPECT_NEAR(f.ramp, 0.95 * 0.5, 2 * kPeriod) << limits.name;
+        EXPECT_LT(f.largest_step, 1e-3) << limits.name;  // 20 mN in 500 periods, and the coupling's lag
+        EXPECT_LT(f.moved, 1e-12) << limits.name;
+        EXPECT_EQ(f.stop, (std::array{17, 0, 0, 10, 0})) << limits.name;
+    }
+}
+
+// An arm that nobody knows, taken for a Touch: four values in turn, 5 µm apart, and a state in every other period.
+TEST(ArmCheck, MeasuresNoiseAndCountOfAnUnknownArm) {
+    ArmCheck check(device_preset("touch"));
+    for (std::uint64_t tick = 1; tick < 20'000 && !check.done(); ++tick) {
+        const DeviceState state{.position = {5e-6 * static_cast<double>(tick / 2 % 4), 0, 0.1}};
+        check.step(tick, tick % 2 ? nullptr : &state);
+    }
+    const ArmFigures f = check.figures();
+    EXPECT_EQ(f.states_per_period, 0.5);
+    EXPECT_NEAR(f.count, 5e-6, 1e-9);
+    EXPECT_NEAR(f.noise, 7.5e-6, 1e-7);  // of 0, 5, 10, 15 µm about their mean
+    for (const int periods : f.stop) {
+        EXPECT_GE(periods, 0);
+        EXPECT_LT(periods, 20);
+    }
+    EXPECT_TRUE(check.finding().empty()) << check.finding().text();
+}
+
+TEST(ArmCheck, AnArmInAHandOrWithoutAWordIsNotCalledSafe) {
+    const auto carried = [](double t) { return HandTarget{.position = {0.05 * t, 0, 0}}; };
+    const ArmCheck held = checked(SimulatedArm(device_preset("touch"), carried));
+    EXPECT_TRUE(held.done());
+    EXPECT_FALSE(held.finding().empty());
+    const ArmCheck silent = checked(nobodys(device_preset("touch")), 0, UINT64_MAX);
+    EXPECT_TRUE(silent.done());
+    EXPECT_FALSE(silent.finding().empty());
+    EXPECT_EQ(silent.figures().greatest_force, 0);
+    // Half a second without a state while force is on: it is picked up anew.
+    const ArmCheck again = checked(nobodys(device_preset("touch")), 1500, 2000);
+    EXPECT_TRUE(again.finding().empty()) << again.finding().text();
 }
 
 DeviceState at(double x) {

@@ -335,6 +335,7 @@ struct ArmChoice {
 /// What a simulated arm and its hand do.
 struct ArmSimulation {
     std::string motion = "circles";   ///< of the hand
+    bool hands_off = false;           ///< nobody holds the arm
     std::string fault = "none";       ///< of the server, after `fault_after` seconds
     double fault_after = 3;           ///< seconds of a connection
     double delay_ms = 0;              ///< of a force on its way

@@ -67,6 +67,7 @@ CLI::App* add_device(CLI::App& app, DeviceWork& d) {
     simulate->add_option("--brush", d.brush, "brush that the hand holds (default: wolf-medium)")->type_name("BRUSH");
     simulate->add_option("--model", d.model, "model that the hand paints (default: the bowl)");
     add_motion(simulate, d);
+    simulate->add_flag("--hands-off", d.simulation.hands_off, "nobody holds the arm, as 'tuft device test' wants it");
     add_delay(simulate, d);
     simulate
         ->add_option("--fault", d.simulation.fault,

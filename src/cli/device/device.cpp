@@ -76,9 +76,13 @@ int list_devices(const DeviceWork& a) {
 int simulate_device(const DeviceWork& a) {
     const ContactModel model = load_contact_model(a.model);
     const haptic::TrialPlace place = haptic::place_above(*model.surface, "");
-    haptic::SimulatedArm arm(haptic::device_preset(a.arm.preset),
-                             hand_of(a, motion_named(a.simulation.motion), place, brush_in_hand(a, a.brush)),
-                             {.delay = 1e-3 * a.simulation.delay_ms, .jitter = jitter_of(a)});
+    haptic::HandPath path = hand_of(a, motion_named(a.simulation.motion), place, brush_in_hand(a, a.brush));
+    haptic::SimulationOptions options{.delay = 1e-3 * a.simulation.delay_ms, .jitter = jitter_of(a)};
+    if (a.simulation.hands_off) {
+        path = [at = path(0)](double) { return at; };
+        options.hand = {.mass = 0, .damping = 0, .stiffness = 0};
+    }
+    haptic::SimulatedArm arm(haptic::device_preset(a.arm.preset), std::move(path), options);
     haptic::serve_simulated(
         std::move(arm),
         {.port = a.arm.port, .fault = fault_named(a.simulation.fault), .fault_after = a.simulation.fault_after},

@@ -1,14 +1,18 @@
 #include <fmt/format.h>
+#include <pthread.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "brush/preset/preset.h"
 #include "cli/device/device_trials.h"
 #include "cli/steps/steps.h"
 #include "core/system/allocations.h"
 #include "core/system/interrupt.h"
+#include "haptic/arm_check.h"
 #include "haptic/loop.h"
 
 /// `tuft device test`: the figures of stability, safety and loop.
@@ -19,9 +23,9 @@ int slowest_stop(const DeviceWork& a, const Places& places) {
     const brush::Tuft tuft = brush::make_tuft(brush_in_hand(a, a.brush));
     const auto path = haptic::hand_path(haptic::HandMotion::rest, places.place[0], tuft.preset);
     int slowest = 0;
-    for (const haptic::TrialFault trouble : haptic::kTrialFaults) {
+    for (const haptic::TrialFault fault : haptic::kTrialFaults) {
         const int periods =
-            haptic::periods_to_stop(tuft, *places.surface[0], path, trial_options(a, tuft.preset), trouble, 2.5);
+            haptic::periods_to_stop(tuft, *places.surface[0], path, trial_options(a, tuft.preset), fault, 2.5);
         if (periods < 0) throw Error("the force of the simulated arm does not end");
         slowest = std::max(slowest, periods);
     }
@@ -47,6 +51,48 @@ haptic::LoopStatus run_loop(const DeviceWork& a, const Places& places, haptic::F
     fault = run_for(loop, a.seconds);
     check_interrupt();
     return loop.status();
+}
+
+constexpr const char* kFaultNames[] = {"silence", "not_a_number", "jump", "pause", "emergency"};
+static_assert(std::size(kFaultNames) == std::size(haptic::kTrialFaults));
+
+/// The safety of a real arm that nobody holds, by the wall clock.
+haptic::ArmCheck check_arm(const DeviceWork& a) {
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::milliseconds kTick{1};
+    haptic::DeviceState state;
+    const std::unique_ptr<haptic::Device> device = open_device(a, {}, state);
+    haptic::ArmCheck check(device->limits());
+    std::thread servo([&] {
+        const sched_param priority{.sched_priority = haptic::LoopOptions{}.servo_priority};
+        ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &priority);  // where the system allows it
+        const Clock::time_point begin = Clock::now();
+        for (std::uint64_t tick = 1; !check.done() && !interrupted();) {
+            std::this_thread::sleep_until(begin + tick * kTick);
+            const bool fresh = device->read(state);
+            device->send(check.step(tick, fresh ? &state : nullptr));
+            tick = std::max<std::uint64_t>(tick + 1, static_cast<std::uint64_t>((Clock::now() - begin) / kTick));
+        }
+        device->send({});
+    });
+    servo.join();
+    check_interrupt();
+    return check;
+}
+
+nlohmann::json to_json(const haptic::ArmCheck& check) {
+    const haptic::ArmFigures f = check.figures();
+    nlohmann::json stops;
+    int slowest = -1;
+    for (std::size_t i = 0; i < f.stop.size(); ++i) {
+        slowest = std::max(slowest, f.stop[i]);
+        stops[kFaultNames[i]] = f.stop[i] < 0 ? nlohmann::json() : nlohmann::json(f.stop[i]);
+    }
+    return {{"safe", check.finding().empty()}, {"states_per_s", f.states_per_period / haptic::kPeriod},
+            {"count_um", 1e6 * f.count},       {"noise_um", 1e6 * f.noise},
+            {"moved_mm", 1e3 * f.moved},       {"check_force_n", f.greatest_force},
+            {"check_step_n", f.largest_step},  {"ramp_ms", 1e3 * f.ramp},
+            {"stop_after_ms", stops},          {"stop_ms", slowest}};
 }
 
 double percent(std::uint64_t part, std::uint64_t whole) {
@@ -104,6 +150,7 @@ int test_device(const DeviceWork& a) {
     const LastWords figures;
     haptic::LoopStatus loop;
     haptic::Fault fault = haptic::Fault::none;
+    Message finding;
     try {
         if (!a.arm.simulate.empty()) {
             haptic::device_preset(a.arm.simulate);
@@ -111,6 +158,10 @@ int test_device(const DeviceWork& a) {
             out = to_json(trials);
             if (!trials.complete) throw Cancelled();
             out["stop_ms"] = slowest_stop(a, places);
+        } else {
+            const haptic::ArmCheck check = check_arm(a);
+            out = to_json(check);
+            finding = check.finding();
         }
         loop = run_loop(a, places, fault);
     } catch (const Cancelled&) {  // what there is, is printed
@@ -131,6 +182,7 @@ int test_device(const DeviceWork& a) {
         console.note("the system allows no real-time priority: cycles will be late (ulimit -r, or CAP_SYS_NICE)");
     print(out, a.common.json);
     if (fault != haptic::Fault::none) throw Error(haptic::describe(fault));
+    if (!finding.empty()) throw Error(finding);
     return 0;
 }
 
