@@ -216,7 +216,7 @@ double most_force(const LawOptions& options, const LawState& s, double left, con
     const Vec3 next = expected_motion(s, 1);
     // A restored force may end while it is great; x′ comes to know of what it takes by so much at once.
     const double hidden = options.restore ? kFlicker * options.limits.count * options.scale : 0;
-    const double kept = left - last * (kReserve * std::max(0.0, glm::dot(next, u)) + hidden);
+    const double kept = left - kReserve * last * std::max(0.0, glm::dot(next, u)) - last * hidden;
     const double planned = spring_force(tank_stiffness(options), std::max(0.0, kept), path_ahead(options, s, next, u));
     const double paid = paid_by_friction(options),
                  most = std::max(planned + paid, last - following_force(options, s) - kFallFree),
