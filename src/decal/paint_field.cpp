@@ -88,7 +88,7 @@ class PaintFinder {
         const auto value_at = [&](const Vec2& p) {
             const Weights w = face.at(p);
             if (w[1] < 0 || w[2] < 0 || w[1] + w[2] >= 1) return -1.0;
-            return coverage_(surface_.source[t], in_model(surface_.weights[t], w));
+            return printed_at(surface_, coverage_, t, grid_.node(p.x, p.y), in_model(surface_.weights[t], w)).coverage;
         };
         const int top = std::min(grid_.height - 1, static_cast<int>(std::ceil(hi.y)));
         const int right = std::min(grid_.width - 1, static_cast<int>(std::ceil(hi.x)));
@@ -204,7 +204,9 @@ class PaintFinder {
             if (const double least = std::min({w[0], w[1], w[2]}); least > deepest)
                 deepest = least, best = face_[node], weights = w;
         }
-        return best != kNone && coverage_(surface_.source[best], in_model(surface_.weights[best], weights)) > kPainted;
+        return best != kNone &&
+               printed_at(surface_, coverage_, best, grid_.node(p.x, p.y), in_model(surface_.weights[best], weights))
+                       .coverage > kPainted;
     }
 
     const PrintSurface& surface_;

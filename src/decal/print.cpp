@@ -201,11 +201,11 @@ PrintImage print_piece(const PrintSurface& surface, const PrintSource& source, c
             std::array<double, kMostPlates> tint{};
             for (int k = 0; k < fine * fine; ++k) {
                 const Vec2 p = corner + pixel / fine * Vec2(k % fine + 0.5, k / fine + 0.5);
-                const Weights w = weights.at(p);
-                const std::uint32_t triangle = surface.source[under[i]];
-                const double c = source.coverage(triangle, w);
+                const PrintedPoint at =
+                    printed_at(surface, source.coverage, under[i], placement.inverse(p), weights.at(p));
+                const double c = at.coverage;
                 if (!(c > 0)) continue;
-                const Vec2 uv = uv_of(source.corner_uvs, triangle, w);
+                const Vec2 uv = uv_of(source.corner_uvs, at.triangle, at.weights);
                 cover += c;
                 std::array<float, 3> rgb;
                 sample(*source.colour, uv, rgb.data());
@@ -238,15 +238,14 @@ PaintSamples sample_paint(const PrintSurface& surface, const PrintSource& source
         const Vec2 p = grid.origin +
                        grid.pixel * Vec2(static_cast<double>(i % width) + 0.5,
                                          static_cast<double>(grid.height - 1) - static_cast<double>(i / width) + 0.5);
-        const Weights w = PixelWeights(surface, {}, under[i]).at(p);
-        const std::uint32_t triangle = surface.source[under[i]];
-        const double cover = source.coverage(triangle, w);
-        if (!(cover > 0)) continue;
-        const Vec2 uv = uv_of(source.corner_uvs, triangle, w);
+        const PrintedPoint at =
+            printed_at(surface, source.coverage, under[i], p, PixelWeights(surface, {}, under[i]).at(p));
+        if (!(at.coverage > 0)) continue;
+        const Vec2 uv = uv_of(source.corner_uvs, at.triangle, at.weights);
         std::array<float, 3> rgb;
         sample(*source.colour, uv, rgb.data());
         sample(*source.amounts, uv, amounts.data());
-        samples.cover.push_back(static_cast<float>(cover));
+        samples.cover.push_back(static_cast<float>(at.coverage));
         samples.colour.push_back({rgb[0] / 255, rgb[1] / 255, rgb[2] / 255});
         samples.amounts.insert(samples.amounts.end(), amounts.begin(),
                                amounts.begin() + static_cast<std::ptrdiff_t>(n_plates));

@@ -17,6 +17,8 @@ namespace {
 
 constexpr double kInside = -1e-9;        // barycentric weights of points on an edge, rounding
 constexpr double kSlack = 1e-9;          // metres, more than rounding changes a distance
+constexpr double kPainted = 0.5;         // coverage: the soft edge of paint beside a rim does not run on
+constexpr double kBesideRim = 1e-6;      // metres
 constexpr std::size_t kMostListed = 32;  // cells that list a triangle, on average
 
 /// Walks over the seams and lays down triangle after triangle.
@@ -150,9 +152,47 @@ class Strip {
     double widest_ = 0;        // of those spans, metres
 };
 
+/// Gives the faces of gaps their rims.
+void add_rims(PrintSurface& surface, const std::vector<std::uint8_t>& in_gap) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> open_side;  // of an edge, as a gap's face has it
+    for (std::uint32_t t = 0; t < surface.faces.size(); ++t)
+        for (std::size_t k = 0; k < 3 && !in_gap[t]; ++k)
+            open_side[{surface.faces[t][(k + 1) % 3], surface.faces[t][k]}] = t;
+    std::vector<GapRim>& all = surface.rims;
+    for (std::uint32_t t = 0; t < surface.faces.size(); ++t)
+        for (std::size_t k = 0; k < 3 && in_gap[t]; ++k) {
+            const std::uint32_t a = surface.faces[t][k], b = surface.faces[t][(k + 1) % 3];
+            if (const auto at = open_side.find({a, b}); at != open_side.end())
+                all.push_back({surface.flat[a], surface.flat[b], {at->second}});
+        }
+    if (all.empty()) return;
+    surface.rims_of.resize(surface.faces.size());
+    for (std::uint32_t t = 0; t < surface.faces.size(); ++t) {
+        const Vec2 a = surface.flat[surface.faces[t][0]], b = surface.flat[surface.faces[t][1]],
+                   c = surface.flat[surface.faces[t][2]];
+        const double around = in_gap[t] ? surface.run_on : kLip;
+        const Vec2 lo = glm::min(a, glm::min(b, c)) - around, hi = glm::max(a, glm::max(b, c)) + around;
+        for (std::uint32_t r = 0; r < all.size(); ++r) {
+            GapRim& rim = all[r];
+            if (std::min(rim.a.x, rim.b.x) > hi.x || std::min(rim.a.y, rim.b.y) > hi.y ||
+                std::max(rim.a.x, rim.b.x) < lo.x || std::max(rim.a.y, rim.b.y) < lo.y)
+                continue;
+            if (in_gap[t])
+                surface.rims_of[t].push_back(r);
+            else if (t != rim.faces[0])
+                rim.faces.push_back(t);
+        }
+    }
+}
+
 }  // namespace
 
 PrintSurface extend(const FilmMesh& film, const Panel& panel, const std::function<double(std::uint32_t label)>& reach) {
+    return extend(film, panel, reach, {}, 0);
+}
+
+PrintSurface extend(const FilmMesh& film, const Panel& panel, const std::function<double(std::uint32_t label)>& reach,
+                    std::span<const std::uint8_t> in_gap, double run_on) {
     Strip strip(film, panel, reach);
     strip.grow();
     PrintSurface surface;
@@ -165,6 +205,12 @@ PrintSurface extend(const FilmMesh& film, const Panel& panel, const std::functio
     }
     for (const Stretch& s : measure_stretch(strip.chart(), surface.flat))
         surface.strain.push_back(static_cast<float>(s.strain()));
+    if (!in_gap.empty() && run_on > 0) {
+        std::vector<std::uint8_t> here;
+        for (const std::uint32_t t : strip.chart().triangles) here.push_back(in_gap[t]);
+        surface.run_on = run_on;
+        add_rims(surface, here);
+    }
     return surface;
 }
 
@@ -185,6 +231,29 @@ std::optional<ModelPoint> locate_in(const PrintSurface& surface, std::size_t t, 
 }
 
 }  // namespace
+
+PrintedPoint printed_at(const PrintSurface& surface, const CoverageFn& coverage, std::size_t t, const Vec2& p,
+                        const Weights& weights) {
+    const PrintedPoint own{surface.source[t], weights, coverage(surface.source[t], weights)};
+    if (surface.rims_of.empty() || surface.rims_of[t].empty() || own.coverage >= 1) return own;
+    double least = surface.run_on;
+    const GapRim* nearest = nullptr;
+    for (const std::uint32_t r : surface.rims_of[t])
+        if (const double d = segment_distance(surface.rims[r].a, surface.rims[r].b, p); d < least)
+            least = d, nearest = &surface.rims[r];
+    if (!nearest) return own;
+    const Vec2 along = nearest->b - nearest->a, out = Vec2(along.y, -along.x) / glm::length(along);
+    const Vec2 rim = glm::mix(nearest->a, nearest->b, nearest_part(nearest->a, nearest->b, p));
+    PrintedPoint most = own;
+    for (const double before : {kBesideRim, kLip})
+        for (const std::uint32_t face : nearest->faces)
+            if (const auto there = locate_in(surface, face, rim + before * out)) {
+                const double cover = coverage(there->triangle, there->weights);
+                if (cover > std::max(most.coverage, kPainted)) most = {there->triangle, there->weights, cover};
+                break;
+            }
+    return most;
+}
 
 std::optional<ModelPoint> locate(const PrintSurface& surface, const Vec2& p) {
     for (std::size_t t = 0; t < surface.faces.size(); ++t)

@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "decal/nest.h"
 #include "decal/page_marks.h"
+#include "decal/panels/gaps.h"
 
 namespace tuft::decal {
 namespace {
@@ -27,6 +28,7 @@ constexpr double kSliver = 0.1;         // of its film, that is painted
 constexpr double kSpecksOfAll = 0.001;  // of all paint, all specks together, and all slivers
 constexpr double kSeamStep = 1e-4;      // metres, at most, between the places of a seam that are looked at
 constexpr double kBesideSeam = 2e-5;    // metres
+constexpr double kTickFrom = 5e-4, kTickTo = 2.5e-3;  // metres from the film
 
 /// Panels with what is printed round them.
 struct CutFilm {
@@ -92,14 +94,16 @@ CutFilm cut_film(const mesh::TriangleMesh& model, const PrintSource& source, con
     return cut;
 }
 
-std::vector<Piece> find_pieces(const CutFilm& cut, const PrintSource& source, const SheetOptions& options,
-                               std::vector<PrintSurface>& surfaces) {
+std::vector<Piece> find_pieces(const mesh::TriangleMesh& model, const CutFilm& cut, const PrintSource& source,
+                               const SheetOptions& options, std::vector<PrintSurface>& surfaces) {
     std::vector<Piece> pieces;
+    const std::vector<std::uint8_t> in_gap = find_gaps(model, cut.film);
     for (std::size_t i = 0; i < cut.panels.size(); ++i) {
         report(options.progress, "cut lines", static_cast<double>(i) / static_cast<double>(cut.panels.size()));
-        surfaces.push_back(extend(cut.film, cut.panels[i], [&](std::uint32_t label) {
+        const auto reach = [&](std::uint32_t label) {
             return overlap_of(cut, i, label, options) + printed_bleed(options);
-        }));
+        };
+        surfaces.push_back(extend(cut.film, cut.panels[i], reach, in_gap, printed_bleed(options)));
         const OutlineOptions outline{
             .bleed = options.bleed,
             .join = options.join,
@@ -278,18 +282,27 @@ std::vector<Vec2> place_pieces(std::vector<Piece>& pieces, const SheetOptions& o
     return labels;
 }
 
-/// The line on a panel's film up to which the next one reaches.
-void add_lap_lines(const CutFilm& cut, const Piece& piece, const SheetOptions& options, Page& page) {
+/// Ticks beside a piece, at both ends of the line up to which the next one reaches. They stand on the waste: whatever
+/// is drawn on the film is printed, on every plate.
+void add_lap_ticks(const CutFilm& cut, const Piece& piece, const SheetOptions& options, Page& page) {
     const Panel& panel = cut.panels[piece.surface];
     const std::vector<std::uint32_t> twin = atlas::twin_half_edges(cut.film.mesh);
     for (std::uint32_t h = 0; h < panel.is_seam.size(); ++h) {
         if (!panel.is_seam[h]) continue;
         const std::uint32_t label = cut.film.label[twin[3 * panel.chart.triangles[h / 3] + h % 3] / 3];
         if (cut.index.at(label) <= piece.surface || options.overlap <= 0) continue;
-        const Vec2 a = panel.flat[panel.chart.faces[h / 3][h % 3]];
-        const Vec2 b = panel.flat[panel.chart.faces[h / 3][(h % 3 + 1) % 3]];
-        if (contains(piece.film, a) && contains(piece.film, b))
-            page.lines.push_back({{piece.placement(a), piece.placement(b)}, false, Role::label});
+        const auto [a, b] = edge_of(panel, h);
+        const double length = glm::length(b - a);
+        const int n = static_cast<int>(length / kSeamStep) + 1;
+        bool inside = contains(piece.film, a);
+        for (int i = 1; i <= n; ++i) {
+            const Vec2 p = glm::mix(a, b, static_cast<double>(i) / n);
+            if (contains(piece.film, p) == inside) continue;
+            const Vec2 out = (inside ? 1.0 : -1.0) * (b - a) / length;
+            inside = !inside;
+            page.lines.push_back(
+                {{piece.placement(p + kTickFrom * out), piece.placement(p + kTickTo * out)}, false, Role::label});
+        }
     }
 }
 
@@ -345,7 +358,7 @@ void draw_pieces(const CutFilm& cut, const PrintSource& source, const SheetOptio
         Page& page = sheet.pages[piece.page];
         draw_paint(source, options, piece, surface, page, inks);
         for (const Ring& ring : placed(piece.film, piece.placement)) page.lines.push_back({ring, true, Role::cut});
-        add_lap_lines(cut, piece, options, page);
+        add_lap_ticks(cut, piece, options, page);
         const Vec2 up{piece.placement.c * piece.up.x - piece.placement.s * piece.up.y,
                       piece.placement.s * piece.up.x + piece.placement.c * piece.up.y};
         add_label(page, piece.number, labels[i], up);
@@ -370,7 +383,7 @@ Sheet make_sheet(const mesh::TriangleMesh& model, const PrintSource& source, con
     const CutFilm cut = cut_film(model, source, options);
     Sheet sheet;
     sheet.max_strain = options.max_strain;
-    sheet.pieces = find_pieces(cut, source, options, sheet.surfaces);
+    sheet.pieces = find_pieces(model, cut, source, options, sheet.surfaces);
     if (sheet.pieces.empty()) throw Error("nothing is painted: there is no film to cut");
     sheet.left_out = leave_out_fragments(cut, source.coverage, options, sheet.pieces);
     for (std::size_t i = 0; i < sheet.pieces.size(); ++i) sheet.pieces[i].number = static_cast<int>(i) + 1;

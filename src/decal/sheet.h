@@ -17,7 +17,7 @@ namespace tuft::decal {
 enum class Role {
     cut,    ///< cut line: a spot colour of its own
     mark,   ///< registration marks and scale bar, on every plate
-    label,  ///< numbers, arrows, lap lines and the foot of the page
+    label,  ///< numbers, arrows, ticks of laps and the foot of the page
 };
 
 /// A line on a page, metres from its lower left corner, y up.

@@ -133,10 +133,18 @@ TEST_F(SheetOfFormula, PanelsLapByTheOverlap) {
     const double round = 2 * 240 * kRadius * std::sin(test::kPi / 240), width = 24 * kMm;
     const double laps = film / width - round;
     EXPECT_NEAR(laps, 2 * 6 * kMm, 0.05 * kMm);  // 10 µm of film along both sides of the band
-    std::size_t lap_lines = 0;
-    for (const Page& page : made.pages)
-        for (const Line& line : page.lines) lap_lines += line.role == Role::label && line.points.size() == 2;
-    EXPECT_GT(lap_lines, 10u);
+    // Ticks of 2 mm at both ends of each lap, and nothing but paint on the film.
+    std::size_t ticks = 0;
+    for (std::size_t p = 0; p < made.pages.size(); ++p)
+        for (const Line& line : made.pages[p].lines) {
+            if (line.role == Role::cut) continue;
+            ticks += line.role == Role::label && line.points.size() == 2 &&
+                     std::abs(glm::length(line.points[1] - line.points[0]) - 2 * kMm) < 1e-9;
+            for (const Piece& piece : made.pieces)
+                for (const Vec2& at : line.points)
+                    EXPECT_FALSE(piece.page == p && contains(piece.film, piece.placement.inverse(at)));
+        }
+    EXPECT_EQ(ticks, 4u);
 }
 
 // A tongue of one area reaches into a bay of the next, so a straight cut between them parts its tip from it.

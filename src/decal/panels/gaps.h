@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "decal/panels/film_mesh.h"
+
+/// \file
+/// Gaps that film spans: shut lines and grooves, in which a brush leaves little. Called by sheet.h.
+namespace tuft::decal {
+
+/// Distance of the walls of the widest gap, metres.
+inline constexpr double kWidestGap = 0.008;
+
+/// Returns for each triangle of the film 1 where it lies in a gap: a ball of diameter `kWidestGap` that touches its
+/// middle from outside meets the model, and over such triangles it is no more than half of that to a wall that faces
+/// another one. So creases and fillets are no gaps. Cost: a closest point and a ray for each triangle. Any number of
+/// threads.
+std::vector<std::uint8_t> find_gaps(const mesh::TriangleMesh& model, const FilmMesh& film);
+
+}  // namespace tuft::decal
