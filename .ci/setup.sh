@@ -9,7 +9,7 @@ packages_build=(build-essential cmake ninja-build pkg-config git ccache gettext
   libglfw3-dev libxrandr-dev libxi-dev libimgui-dev libepoxy-dev libgl-dev libegl-dev libspnav-dev)
 # What the tests are configured and compiled with, and what they only run.
 packages_test=(libgtest-dev libgmock-dev liborocos-kdl-dev clang-format doxygen)
-packages_run=(poppler-utils slurm-wlm munge parallel occt-misc gmsh-doc netgen-doc ffmpeg imagemagick lib3mf1 mandoc zsh appstream desktop-file-utils
+packages_run=(poppler-utils python3-ezdxf slurm-wlm munge parallel occt-misc gmsh-doc netgen-doc ffmpeg imagemagick lib3mf1 mandoc zsh appstream desktop-file-utils
   xvfb xauth xdotool libgl1-mesa-dri libegl1
   xserver-xorg-core xserver-xorg-video-dummy xserver-xorg-input-wacom umockdev)
 

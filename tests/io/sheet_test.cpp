@@ -317,6 +317,25 @@ TEST_F(SheetFiles, DxfHeaderSaysMillimetres) {
     EXPECT_EQ(header["$MEASUREMENT"], "1");
 }
 
+TEST_F(SheetFiles, DxfIsReadByEzdxf) {
+    const fs::path path = folder_ / "sheet.dxf", script = folder_ / "read.py";
+    write_sheet(path, sample(false));
+    std::ofstream(script) << "import sys, ezdxf\n"
+                             "d = ezdxf.readfile(sys.argv[1])\n"
+                             "print('mm' if d.units == ezdxf.units.MM else 'other', len(d.audit().errors))\n"
+                             "for p in d.modelspace().query('POLYLINE'):\n"
+                             "    at = (v.dxf.location for v in p.vertices)\n"
+                             "    print(p.dxf.layer, p.is_closed, *('%g,%g' % (v.x, v.y) for v in at))\n";
+    const std::string python = "/usr/bin/python3 ";  // Debian's, which has Debian's modules
+    if (output_of(python + "-c 'import importlib.util as u; exit(not u.find_spec(\"ezdxf\"))' && echo yes").empty())
+        GTEST_SKIP() << "python3-ezdxf is not installed";
+    EXPECT_EQ(output_of(python + "'" + script.string() + "' '" + path.string() + "'"),
+              "mm 0\n"
+              "CutContour True 20,30 80,30 80,70 20,70\n"
+              "Registration False 2,5 8,5\n"
+              "Labels False 20,72 25,75 30,72\n");
+}
+
 TEST_F(SheetFiles, SeveralPagesAreNumberedFilesAndAllOrNone) {
     decal::Sheet sheet = sample(false);
     sheet.pages.push_back(sheet.pages[0]);
