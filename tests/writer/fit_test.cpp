@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 
 #include "core/error.h"
 #include "core/files/files.h"
@@ -173,6 +174,30 @@ TEST(Writer, NamesTheSizeOfABrushThatFits) {
         ASSERT_TRUE(fits) << brush;
         EXPECT_EQ(size_that_fits(*fits, side), std::nullopt) << *fits;
     }
+}
+
+// 撇 begins with a slanted head and turns back. Set down at a tenth of its depth, a tuft prints a disc at its point
+// that no correction takes back.
+TEST(Fit, ASofterTouchCoversASlantedHeadBetter) {
+    stroke::WidthTables tables;
+    const std::string brush = "goat-medium";
+    const BrushHand hand{tables.preset(brush), tables.of(brush), tables.holder(brush), 1.3e-4};
+    std::vector<Station> falling;
+    for (int i = 0; i < 7; ++i) falling.push_back({Vec2(300, 700) + 8.0 * i * Vec2(0.6, -0.8), 7 + 3.5 * i});
+    const Vec2 turn = falling.back().centre;
+    for (int i = 1; i <= 30; ++i) falling.push_back({turn + 8.0 * i * Vec2(-0.7, -0.714), 28 - 0.75 * i});
+    std::vector<Ring> discs;
+    for (const Station& s : resample_stations(falling, 3)) {
+        Ring& disc = discs.emplace_back();
+        for (int k = 0; k < 40; ++k)
+            disc.push_back(s.centre +
+                           s.half * Vec2(std::cos(k * std::numbers::pi / 20), std::sin(k * std::numbers::pi / 20)));
+    }
+    FitTarget target{.wanted = cells_over(discs, 2, 80)};
+    fill(target.wanted, discs);
+    const FitResult soft = fit_stations(falling, target, hand, {}, {}),
+                    hard = fit_stations(falling, target, hand, {.touch = 0.1}, {});
+    EXPECT_GT(soft.iou, hard.iou);
 }
 
 // What was drawn before must not be seen.

@@ -33,7 +33,7 @@ struct Pace {
     double ease = 40;     ///< units
     /// Units to either side of the path over which a head is set down, from the left to the right; 0: along the path.
     double across = 1;
-    double touch = 0.1;  ///< pressure of that, at most that of the head's width
+    double touch = 0.05;  ///< pressure of that, at most that of the head's width
     /// Radians by which the holder leans back along the path, by the code of a segment; others: upright.
     std::map<char, double> lean;
 };

@@ -26,7 +26,7 @@ constexpr double kNeedle = 24;           // units about an end in which its ink 
 constexpr double kNeedleBack = 0.6;      // part of that taken back at once
 constexpr float kDeepest = 24;           // units of depth that count
 constexpr double kPrice = 0.002;         // of the score, for a knuckle of the least curvature
-constexpr double kFairPrice = 0.006;     // likewise, where lines are made fair
+constexpr double kFairPrice = 0.0015;    // likewise, where lines are made fair
 constexpr double kStiffWay = 0.4, kStiffHalf = 0.05;  // of the path and its half widths: halve waves of 40 and 24 units
 constexpr double kRound = 0.9;                        // of a stroke's half width: the radius that a print of it has
 constexpr float kSpike = 0.1f;                        // weight of wanted cells that such prints cannot reach
