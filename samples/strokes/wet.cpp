@@ -102,7 +102,8 @@ std::vector<stroke::RecordedStroke> wet_sheet() {
     // A wet stripe, and a clean wet brush drawn through it.
     Writer smear = on_sheet(-50, -45);
     smear.add(
-        {"stripe", {{-30, -8, 0}, {-29, -8, 3}, {-23, -11, 9}, {-8, -12, 8}, {13, -6, 8}, {26, -9, 5}, {31, -13, 0}}},
+        {"stripe",
+         {{-31, -9.5, 0}, {-29.8, -9.7, 2.5}, {-21, -11.2, 9}, {-8, -12, 8}, {13, -6, 8}, {26, -9, 5}, {31, -13, 0}}},
         {.brush = "mixed-medium", .ink = "indigo"});
     const double starts[] = {-19, -1, 17};
     for (const double x : starts)
