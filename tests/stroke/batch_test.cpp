@@ -217,5 +217,22 @@ TEST_F(Batch, PartsOfAPathCoverItOnce) {
     EXPECT_EQ(parts_of_path({}, 7e-3), (std::vector<std::size_t>{0}));
 }
 
+// Up to eight stamps of ink wait at the end of a stroke, and a lift passes several parts in the air.
+TEST_F(Batch, PlacesOfALiftAreInUseToTheEnd) {
+    const brush::Preset preset = brush::load_preset("wolf-small");
+    std::vector<brush::Pose> poses(60);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        const double lift = 1e-3 * std::max(0.0, static_cast<double>(i) - 19);  // metres
+        poses[i].position = {1e-3 * static_cast<double>(std::min<std::size_t>(i, 19)), 0, preset.length - 2e-3 + lift};
+    }
+    const std::vector<std::size_t> parts = parts_of_path(poses, 5e-3);
+    const std::vector<ReachedPlace> places = reached_places(*model().query, poses, parts, preset, 6e-5);
+    const auto end = static_cast<std::uint32_t>(parts.size());
+    ASSERT_FALSE(places.empty());
+    EXPECT_GT(end, places.back().first + 3) << "in the air";
+    EXPECT_EQ(places.back().last, end);
+    EXPECT_LT(places.front().last, end);
+}
+
 }  // namespace
 }  // namespace tuft::stroke

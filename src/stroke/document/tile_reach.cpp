@@ -68,6 +68,10 @@ std::vector<ReachedPlace> reached_places(const mesh::SurfaceQuery& query, std::s
             places.push_back({{at->position, trail + beside + step + gap}, part, part + 1});
         }
     }
+    // Over the last of them the hair leaves the surface; its ink waits for a stamp that does not come.
+    const auto end = static_cast<std::uint32_t>(parts.size());
+    for (ReachedPlace& place : places)
+        if (place.last >= places.back().first) place.last = end;
     return places;
 }
 
