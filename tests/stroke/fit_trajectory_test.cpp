@@ -88,6 +88,21 @@ TEST(FitTrajectory, CornersHaveNoKnobs) {
     }
 }
 
+// A corner is tried with the path that the tuft needs to follow, not with all of a long line: it comes out as between
+// short lines.
+TEST(FitTrajectory, CornersOfLongLinesComeOutAsThoseOfShortOnes) {
+    const std::initializer_list<Vec2> points{{-0.06, 0}, {0, 0}, {-0.025, 0.054}};
+    const StrokeSamples plain = through(points), tried = fitted(plain);
+    const Spill before = spilt(plain, points, {0, 0}, 3 * kWidth), after = spilt(tried, points, {0, 0}, 3 * kWidth);
+    EXPECT_LT(after.farthest, 0.62 * kWidth);  // as above
+    EXPECT_LT(after.area, 0.5 * before.area);  // with what soft edges leave
+    // Far from the corner the hand keeps to the line.
+    for (const StrokeSample& s : tried.samples)
+        if (glm::length(s.position) > 0.03) {
+            EXPECT_LT(std::min(std::abs(s.position.y), std::abs(0.054 * s.position.x + 0.025 * s.position.y)), 1e-9);
+        }
+}
+
 TEST(FitTrajectory, LeavesWhatHasNoCornerAndIsRepeatable) {
     const StrokeSamples straight = through({{-0.02, 0}, {0.02, 0.003}});
     const StrokeSamples same = fitted(straight);

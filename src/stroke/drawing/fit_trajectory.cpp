@@ -10,6 +10,7 @@
 #include "core/geometry/plane_vectors.h"
 #include "core/hat.h"
 #include "core/system/interrupt.h"
+#include "core/system/parallel.h"
 #include "stroke/drawing/plane_ink.h"
 #include "stroke/gesture/roll.h"
 #include "stroke/gesture/tractrix.h"
@@ -27,6 +28,7 @@ constexpr double kFarthest = 0.8;   // that ink is looked for beyond the wanted 
 constexpr double kSoft = 0.4;       // of the path to both sides over which corrections are smoothed
 constexpr double kAbout = 2.5;      // of the path about a turn that is corrected
 constexpr double kMostMoved = 1.5;  // that the path moves
+constexpr double kSettle = 2;       // of the path before a place is corrected, besides kFollow
 constexpr double kOwn = 0.8;        // of the path from a place within which the tuft lays its ink there
 constexpr double kEdge = 0.08;      // of the half width within which a place still belongs to the edge
 constexpr double kUnder = 0.1;      // of another line's half width from its edge: less may be bare
@@ -37,6 +39,7 @@ constexpr double kTurn = 0.35,
 constexpr double kFan = pi / 12;  // radians between edge points round a corner
 constexpr double kLifted = 0.65;  // part of the width that a first try leaves out at a sharp turn
 constexpr double kShift = 0.6, kPress = 0.3, kKick = 2;  // parts of an error taken back at once
+constexpr double kFollow = 0.6;  // of the tuft's length: a path over which the tip comes to follow its holder
 constexpr int kTries = 8;
 constexpr double kLongest = 2000;  // widths: longer lines are not fitted
 constexpr double kEnough = 0.008,
@@ -106,7 +109,6 @@ class DrawnArea {
                    return d.line != but && glm::distance(p, d.centre) < (1 - slack) * d.half;
                });
     }
-    std::size_t line = 0;  ///< that is fitted
 
   private:
     static constexpr double kSquare = 4e-3;  // metres
@@ -125,13 +127,13 @@ namespace {
 
 /// The edge of the discs round the stations.
 std::vector<EdgePoint> find_edge_points(const std::vector<Station>& stations, const std::vector<double>& weight,
-                                        double width, const DrawnArea* area) {
+                                        double width, const FittedLine& line) {
     std::vector<EdgePoint> points;
     DrawnArea own;
     for (const Station& s : stations) own.add(0, s.centre, s.half);
     const auto add = [&](std::size_t i, const Vec2& out) {
         const Vec2 at = stations[i].centre + stations[i].half * out;
-        if (own.covers(at, 1, kEdge) || (area && area->covers(at, area->line, kUnder))) return;
+        if (own.covers(at, 1, kEdge) || (line.area && line.area->covers(at, line.number, kUnder))) return;
         double far = 0;
         while (far < kFarthest * width && !own.covers(at + (far + 0.1 * width) * out, 1, 0)) far += 0.1 * width;
         points.push_back({at, out, i, far});
@@ -291,10 +293,22 @@ void correct(Correction& correction, const InkErrors& errors, const FittedPath& 
     }
 }
 
+/// The samples that decide where the ink of the corrected ones lies: those, and what the tuft needs to follow.
+std::span<const StrokeSample> deciding(std::span<const StrokeSample> samples, const FittedPath& path, double lead) {
+    const auto corrected = [](double weight) { return weight > 0; };
+    const auto first = std::ranges::find_if(path.weight, corrected) - path.weight.begin();
+    const auto last =
+        std::find_if(path.weight.rbegin(), path.weight.rend(), corrected).base() - path.weight.begin() - 1;
+    const auto& along = path.along;
+    const auto from = std::lower_bound(along.begin(), along.end(), along[first] - lead) - along.begin();
+    const auto to = std::upper_bound(along.begin(), along.end(), along[last] + lead) - along.begin();
+    return samples.subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(to - from));
+}
+
 }  // namespace
 
 StrokeSamples fit_trajectory(StrokeSamples trace, const brush::Preset& preset, const LineWidths& widths,
-                             const HolderOptions& options, const DrawnArea* area) {
+                             const HolderOptions& options, const FittedLine& line) {
     if (!trace.flat || trace.samples.size() < 3 || !(trace.line_width > 0)) return trace;
     const double width = std::max(trace.line_width, widths.least());
     if (travelled<StrokeSample>(trace.samples).back() > kLongest * width) return trace;
@@ -312,10 +326,10 @@ StrokeSamples fit_trajectory(StrokeSamples trace, const brush::Preset& preset, c
     for (std::size_t i = 0; i < n; ++i)
         correction.wider[i] =
             -2 * kLifted * path.stations[i].half * (1 - smooth_step(correction.wider[i] / (kSharpLift * width)));
-    const std::vector<EdgePoint> edge = find_edge_points(path.stations, path.weight, width, area);
+    const std::vector<EdgePoint> edge = find_edge_points(path.stations, path.weight, width, line);
     if (edge.empty()) return trace;
     double least = 1e300;
-    StrokeSamples best = trace;
+    StrokeSamples best = trace, part = trace;
     for (int t = 0, idle = 0; t < kTries && idle < 2; ++t) {
         check_interrupt();
         for (std::size_t i = 0; i < n; ++i) {
@@ -326,7 +340,9 @@ StrokeSamples fit_trajectory(StrokeSamples trace, const brush::Preset& preset, c
             s.pressure =
                 wider == 0 && moved == Vec2(0) ? s.pressure : widths.pressure(2 * path.stations[i].half + wider);
         }
-        const PlaneInk ink = plane_ink(tried, preset, options, kStep * width, kCell * width);
+        const auto samples = deciding(tried.samples, path, kSettle * width + kFollow * preset.length);
+        part.samples.assign(samples.begin(), samples.end());
+        const PlaneInk ink = plane_ink(part, preset, options, kStep * width, kCell * width);
         const InkErrors errors = measure_ink(ink, tried, path, edge);
         idle = errors.rms < kGain * least ? 0 : idle + 1;
         if (errors.rms < least) {
@@ -345,28 +361,37 @@ void fit_trajectory(std::span<PaintStroke* const> drawing, WidthTables& tables) 
         return a.ink == b.ink && p.origin == q.origin && p.right == q.right && p.down == q.down &&
                p.mapping == q.mapping;
     };
+    struct Line {
+        std::size_t number = 0;
+        const brush::Preset& preset;
+        const LineWidths& widths;
+        const HolderOptions& holder;
+    };
     std::vector<bool> done(drawing.size(), false);
     for (std::size_t first = 0; first < drawing.size(); ++first) {
         if (done[first]) continue;
         DrawnArea area;
+        std::vector<Line> lines;
         for (std::size_t i = first; i < drawing.size(); ++i) {
             if (done[i] || !together(*drawing[i], *drawing[first])) continue;
+            done[i] = true;
             const StrokeSamples& t = drawing[i]->trace;
-            const LineWidths& widths = tables.of(drawing[i]->brush);
+            const std::string& brush = drawing[i]->brush;
+            const LineWidths& widths = tables.of(brush);
+            lines.push_back({i, tables.preset(brush), widths, tables.holder(brush)});
             if (t.samples.empty() ||
                 travelled<StrokeSample>(t.samples).back() > kLongest * std::max(t.line_width, widths.least()))
                 continue;
             for (const StrokeSample& s : evenly(t.samples, kApart * std::max(t.line_width, widths.least())))
                 area.add(i, Vec2(s.position), 0.5 * widths.at(s.pressure));
         }
-        for (std::size_t i = first; i < drawing.size(); ++i) {
-            if (done[i] || !together(*drawing[i], *drawing[first])) continue;
-            area.line = i;
-            const std::string& brush = drawing[i]->brush;
-            StrokeSamples& t = drawing[i]->trace;
-            t = fit_trajectory(std::move(t), brush::load_preset(brush), tables.of(brush), tables.holder(brush), &area);
-            done[i] = true;
-        }
+        parallel_for(lines.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                const Line& line = lines[k];
+                StrokeSamples& t = drawing[line.number]->trace;
+                t = fit_trajectory(std::move(t), line.preset, line.widths, line.holder, {&area, line.number});
+            }
+        });
     }
 }
 
