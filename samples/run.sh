@@ -90,7 +90,7 @@ if command -v pdftoppm >/dev/null; then  # of poppler-utils
 fi
 
 # By brushes of trades: petals of two inks, bamboo by a flat, blue-and-white, a sword's pinstripe.
-paint one-stroke plate one-stroke "" --view 0,70 --zoom 2 --size 740x460
+paint one-stroke plate one-stroke "" --view 0,70 --zoom 2.5 --size 740x460
 paint flat-bamboo sheet flat-bamboo "--substrate rice-paper" --view 0,89 --size 740x460 --zoom 1.3
 paint blue-and-white vase blue-and-white "--film wet --dry 0" --view 0,4 --size 740x460 --zoom 1.8 --target 0,-60,111
 paint car-sword car car-sword "--substrate clay" --view 10,8 --size 740x460

@@ -489,6 +489,21 @@ TEST(TipLag, ADotOfAFilbertLiesWhereItIsSet) {
     }
 }
 
+// A flat's dot is 2 to 5 mm thick: 0.3 mm, as of round brushes, is not seen. A sword's is 12 mm long; it lies within an
+// eighth of that.
+TEST(TipLag, DotsOfFlatsAndBladesLieWhereTheyAreSet) {
+    const Model model = dome(0, 0);
+    for (const auto& [name, most] : {std::pair{"flat-12", 0.3e-3}, {"bright-12", 0.3e-3}, {"sword-8", 1.5e-3}}) {
+        brush::Preset preset = brush::load_preset(name);
+        preset.name = "coarse";
+        preset.segments = 10;
+        Document painting(model);
+        painting.use(preset);
+        const Vec3 off = test::ink_centre(painting, dot_at_origin({0, 0, 1}, preset.name, 0.3, false));
+        EXPECT_LT(glm::length(Vec2(off)), most) << name;
+    }
+}
+
 // Hand and brush in the mirror paint the mirror image. The holder leans ahead: hair set down plumb falls to its own y.
 TEST(TipLag, AFlatAndASwordPaintTheirMirrorImages) {
     constexpr double kCell = 1e-4;
