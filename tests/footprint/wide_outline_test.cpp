@@ -188,7 +188,7 @@ TEST(WideOutline, RefinedRowsConvergeWithTheSquareOfTheirPitch) {
     // with it the force, converge more slowly than its breadth.
     // Pressed until the hair of its edges lies, too.
     const Refined filbert = refined("filbert-12", 1, 0.3);
-    EXPECT_GT(order_of(filbert.force), 0.7);
+    EXPECT_GT(order_of(filbert.force), 1.2);
     EXPECT_GT(order_of(filbert.width), 1.8);
     // A wet fan zips in other places for each number of spines; dry hair has no film.
     EXPECT_GT(order_of(refined("fan-30", 0, 0.2).force), 1.7);
