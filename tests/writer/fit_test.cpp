@@ -10,6 +10,7 @@
 #include "core/system/parallel.h"
 #include "core/text/units.h"
 #include "stroke/drawing/plane_ink.h"
+#include "stroke/placement/tip_lag.h"
 #include "writer/fit/writer.h"
 #include "writer/gesture/heads.h"
 #include "writer/glyphs/glyph_source.h"
@@ -358,6 +359,27 @@ TEST(Style, ShippedOnesLoadAndUnknownKeysAreNamed) {
     EXPECT_ANY_THROW(load_style("kaisu"));
     EXPECT_ANY_THROW(parse_style("speed_mm = 3", "s.toml"));
     EXPECT_ANY_THROW(parse_style("tries = 1000", "s.toml"));
+}
+
+// A make that leans keeps its lean in segments that a style does not name, and in strokes without one that it names.
+TEST(Style, AMakeThatLeansLeansInTheOtherSegments) {
+    stroke::WidthTables tables;
+    stroke::HolderOptions hold;
+    hold.lean = 0.4, hold.tuft_length = 0.02;
+    const BrushHand hand{tables.preset("goat-medium"), tables.of("goat-medium"), hold, 1e-4};
+    std::vector<Station> bend;  // 橫 to the right, then 豎 down
+    for (int i = 0; i <= 100; ++i) bend.push_back({{8.0 * i, 800}, 20});
+    for (int i = 1; i <= 100; ++i) bend.push_back({{800, 800 - 8.0 * i}, 20});
+    const Pace pace{.across = 0, .lean = {{'S', 0.1}}};
+    const auto length = [&](const stroke::StrokeSamples& trace, std::size_t i) {
+        return glm::length(stroke::lean_holder(trace, hand.hold).samples[i].tilt);
+    };
+    const stroke::StrokeSamples own = samples_of(bend, hand, {.across = 0}), named = samples_of(bend, hand, pace);
+    ASSERT_GT(length(own, 50), 0.3) << "as the make is held";
+    EXPECT_NEAR(length(named, 50), length(own, 50), 1e-12);
+    EXPECT_NEAR(length(named, 150), 0.1, 1e-9);
+    const std::vector<Station> straight(bend.begin(), bend.begin() + 90);
+    EXPECT_NEAR(length(samples_of(straight, hand, pace), 50), length(own, 50), 1e-12);
 }
 
 // A style that states no lean holds the brush upright. 人: 撇, then 捺.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "stroke/placement/tip_lag.h"
 #include "writer/gesture/stroke_line.h"
 
 namespace tuft::writer {
@@ -49,30 +51,53 @@ std::vector<stroke::StrokeSample> touch_of(std::span<const Station> s, const Bru
     return touch;
 }
 
-/// Tilt of the holder at each station, radians to the right and down.
-std::vector<Vec2> tilts_of(std::span<const Station> stations, std::span<const double> along, const Pace& pace) {
-    std::vector<Vec2> own, tilts(stations.size(), Vec2(0));
-    if (pace.lean.empty() || stations.size() < 2 || !(along.back() > 1e-9)) return tilts;
-    std::vector<Vec2> centres;
-    for (const Station& s : stations) centres.push_back(s.centre);
-    const StrokeLine line = make_stroke_line(centres);
-    for (const double at : along) {
-        const double there = at / along.back() * line.length();
-        std::size_t s = 0;
-        while (s + 1 < line.segments.size() && there > line.along[line.segments[s].last]) ++s;
-        const auto lean = pace.lean.find(line.segments[s].code);
-        const Vec2 d = line.direction(there);
-        own.push_back(lean == pace.lean.end() ? Vec2(0) : lean->second * Vec2(-d.x, d.y));
-    }
+/// Tilt at each station of a holder that is held as its make is.
+std::vector<Vec2> make_tilts(std::span<const Station> stations, const BrushHand& hand, double roll) {
+    std::vector<Vec2> tilts(stations.size(), Vec2(0));
+    if (!(hand.hold.lean > 0)) return tilts;
+    stroke::StrokeSamples trace;
+    for (const Station& s : stations)
+        trace.samples.push_back({.position = {s.centre.x * hand.unit, -s.centre.y * hand.unit, 0}, .roll = roll});
+    trace = stroke::lean_holder(std::move(trace), hand.hold);
+    for (std::size_t i = 0; i < tilts.size(); ++i) tilts[i] = trace.samples[i].tilt;
+    return tilts;
+}
+
+/// Means within `reach` units, nearer ones weigh more.
+std::vector<Vec2> blended(const std::vector<Vec2>& own, std::span<const double> along, double reach) {
+    std::vector<Vec2> out(own.size(), Vec2(0));
     for (std::size_t i = 0; i < own.size(); ++i) {
         double all = 0;
         for (std::size_t k = 0; k < own.size(); ++k) {
-            const double weight = std::max(0.0, 1 - std::abs(along[k] - along[i]) / std::max(pace.ease, 1.0));
-            tilts[i] += weight * own[k], all += weight;
+            const double weight = std::max(0.0, 1 - std::abs(along[k] - along[i]) / std::max(reach, 1.0));
+            out[i] += weight * own[k], all += weight;
         }
-        tilts[i] /= all;
+        out[i] /= all;
     }
-    return tilts;
+    return out;
+}
+
+/// Tilt of the holder at each station, radians to the right and down.
+std::vector<Vec2> tilts_of(std::span<const Station> stations, std::span<const double> along, const BrushHand& hand,
+                           const Pace& pace) {
+    std::vector<Vec2> none(stations.size(), Vec2(0));
+    if (pace.lean.empty() || stations.size() < 2 || !(along.back() > 1e-9)) return none;
+    std::vector<Vec2> centres;
+    for (const Station& s : stations) centres.push_back(s.centre);
+    const StrokeLine line = make_stroke_line(centres);
+    std::vector<Vec2> own = make_tilts(stations, hand, pace.roll);
+    bool named = false;
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        const double there = along[i] / along.back() * line.length();
+        std::size_t s = 0;
+        while (s + 1 < line.segments.size() && there > line.along[line.segments[s].last]) ++s;
+        const auto lean = pace.lean.find(line.segments[s].code);
+        if (lean == pace.lean.end()) continue;
+        const Vec2 d = line.direction(there);
+        own[i] = lean->second * Vec2(-d.x, d.y);
+        named = true;
+    }
+    return named ? blended(own, along, pace.ease) : none;
 }
 
 }  // namespace
@@ -84,7 +109,7 @@ stroke::StrokeSamples samples_of(std::span<const Station> stations, const BrushH
         along.push_back(along.back() + glm::distance(stations[i].centre, stations[i - 1].centre));
     const std::size_t near_end = stations.size() - std::min<std::size_t>(stations.size(), 4);
     const bool blunt = stations[near_end].half > kBlunt;
-    const std::vector<Vec2> tilts = tilts_of(stations, along, pace);
+    const std::vector<Vec2> tilts = tilts_of(stations, along, hand, pace);
     double time = 0;
     for (std::size_t i = 0; i < stations.size(); ++i) {
         const double bend = std::max(curvature(stations, i) * pace.radius, 1.0);
@@ -104,6 +129,7 @@ stroke::StrokeSamples samples_of(std::span<const Station> stations, const BrushH
         for (stroke::StrokeSample& sample : trace.samples) sample.time -= begin;
         for (std::size_t i = 0; i < touch.size(); ++i) trace.samples[i].tilt = tilts.front();
     }
+    for (stroke::StrokeSample& sample : trace.samples) sample.roll = pace.roll;
     stroke::StrokeSample last = trace.samples.back();
     last.time += kLiftTime;
     last.pressure = 0;

@@ -35,15 +35,18 @@ struct Pace {
     double across = 1;
     double touch = 0.05;  ///< pressure of that, at most that of the head's width
     /// Radians by which the holder leans back along the path, by the code of a segment; others: upright.
+    /// Of a brush whose make leans (`HolderOptions::lean`): as it is held.
     std::map<char, double> lean;
+    double roll = 0;  ///< radians, of the holder
 };
 
 /// Returns the flat samples of a hand along stations, metres, y down: pressures that draw the widths
-/// (`LineWidths::pressure`, below the least width in proportion to 0), the holder leaning as `pace.lean` says, and a
-/// last sample where the tip leaves. Before the station of the head the brush is set down across the path: its hair
-/// lies across, and rounds the head. A tuft that is set down along the path leaves a point as thin as its tip. At
-/// corners the lean goes over from one segment to the next within `pace.ease`. Frame: the character's square, origin at
-/// its lower left corner, so y is negative within it.
+/// (`LineWidths::pressure`, below the least width in proportion to 0), the holder leaning as `pace.lean` says (upright
+/// throughout where it names no segment of the stroke: `stroke::lean_holder` leans a make then), and a last sample
+/// where the tip leaves. Before the station of the head the brush is set down across the path: its hair lies across,
+/// and rounds the head. A tuft that is set down along the path leaves a point as thin as its tip. At corners the lean
+/// goes over from one segment to the next within `pace.ease`. Frame: the character's square, origin at its lower left
+/// corner, so y is negative within it.
 stroke::StrokeSamples samples_of(std::span<const Station> stations, const BrushHand& hand, const Pace& pace = {});
 
 }  // namespace tuft::writer

@@ -233,13 +233,12 @@ WrittenStroke Writer::motion(const std::vector<Station>& stations, const Glyph& 
                 style.kind == HandKind::line ? style.half_width : median_width(with.widths, with.unit) / with.unit / 2;
     Pace at = pace();
     if (drawn) at.across = 0;
+    const bool edged = style.kind == HandKind::nib && glyph.single_line;
+    if (edged) at.roll = style.edge_angle - (glyph.sideways ? 0.5 * std::numbers::pi : 0);
     out.trace = samples_of(own, with, at);
-    if (style.kind == HandKind::nib && glyph.single_line)
-        for (stroke::StrokeSample& s : out.trace.samples) {
-            s.roll = style.edge_angle - (glyph.sideways ? 0.5 * std::numbers::pi : 0);
-            // Its width is the ferrule's: pressed deeper, hair that turns over drags steps into the counter.
-            if (brush::can_be_turned(with.preset)) s.pressure = std::min(s.pressure, style.edge_pressure);
-        }
+    // Its width is the ferrule's: pressed deeper, hair that turns over drags steps into the counter.
+    if (edged && brush::can_be_turned(with.preset))
+        for (stroke::StrokeSample& s : out.trace.samples) s.pressure = std::min(s.pressure, style.edge_pressure);
     return out;
 }
 
