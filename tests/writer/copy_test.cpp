@@ -190,6 +190,18 @@ TEST(CopiedPicture, CutsAreReadAsTheyAreWrittenAndWrongOnesQuoted) {
     EXPECT_THROW(take_apart(photo_of(kTen), "photo", {.threshold = 0, .cuts = {{99, 0.5}}, .order = {}}), Error);
 }
 
+Ring box_ring(double left, double bottom, double right, double top) {
+    return {{left, bottom}, {left, top}, {right, top}, {right, bottom}};
+}
+
+/// Part of the area that strokes and it have in common.
+double covered_part(const Glyph& written, const std::vector<Ring>& area) {
+    Cells wanted = cells_over(area, 4, 20), covered = wanted;
+    fill(wanted, area);
+    for (const GlyphStroke& s : written.strokes) fill(covered, s.outline);
+    return overlap(wanted, covered);
+}
+
 // 十 as a font has it: one outline without an order. What its strokes cover is the outline, but for corners that are
 // rounded by half a cell.
 TEST(Copy, TheAreaOfAFontIsTakenApartIntoStrokes) {
@@ -203,17 +215,50 @@ TEST(Copy, TheAreaOfAFontIsTakenApartIntoStrokes) {
     EXPECT_TRUE(written.sideways);
     EXPECT_GT(written.strokes[0].median.back().x - written.strokes[0].median.front().x, 700) << "橫 first";
     EXPECT_LT(written.strokes[1].median.back().y - written.strokes[1].median.front().y, -700) << "from the top";
-    Cells wanted = cells_over(font.area, 4, 20), covered = wanted;
-    fill(wanted, font.area);
-    for (const GlyphStroke& s : written.strokes) fill(covered, s.outline);
-    double both = 0, either = 0;
-    for (std::size_t i = 0; i < wanted.inside.size(); ++i)
-        both += wanted.inside[i] && covered.inside[i], either += wanted.inside[i] || covered.inside[i];
-    EXPECT_GT(both / either, 0.98);
+    EXPECT_GT(covered_part(written, font.area), 0.98);
     Glyph wide = font;
     for (Vec2& p : wide.area[0]) p.x *= 6;
     EXPECT_EQ(strokes_of_area(wide).area, wide.area) << "an ornament wider than four characters stays filled";
     EXPECT_TRUE(strokes_of_area({.code = U' '}).strokes.empty());
+}
+
+// i and o beside each other: a stem, a dot above it, and a box with a hole.
+TEST(Copy, ADotAndARingOfAFontAreStrokesToo) {
+    const std::vector<Ring> area{box_ring(100, 0, 180, 500),
+                                 box_ring(100, 600, 180, 680),
+                                 box_ring(300, 0, 700, 500),
+                                 {{380, 80}, {620, 80}, {620, 420}, {380, 420}}};
+    const Glyph written = strokes_of_area({.code = U'i', .area = area, .advance = 800});
+    EXPECT_TRUE(written.area.empty());
+    EXPECT_GE(written.strokes.size(), 3u);
+    EXPECT_GT(covered_part(written, area), 0.97);  // corners of cells, of a dot and a hole too
+    const auto holds = [&](const Vec2& p) {
+        return std::any_of(written.strokes.begin(), written.strokes.end(), [&](const GlyphStroke& s) {
+            Cells cells = cells_over(s.outline, 2, 8);
+            fill(cells, s.outline);
+            return cells.contains(p);
+        });
+    };
+    EXPECT_TRUE(holds({140, 640})) << "the dot";
+    EXPECT_FALSE(holds({500, 250})) << "the hole";
+}
+
+// A font is anybody's file. Each of these took minutes, or gigabytes, before it was refused or at all.
+TEST(Copy, HugeAreasOfAFontStayFilled) {
+    std::vector<Ring> bars, dots;
+    for (int k = 0; k < 97; ++k) bars.push_back(box_ring(0, 40 * k, 3900, 40 * k + 20));
+    for (int k = 0; k < 40 * 40; ++k) {
+        const double x = 25 * (k % 40), y = 25 * (k / 40);
+        dots.push_back(box_ring(x, y, x + 10, y + 10));
+    }
+    const std::vector<Ring> far{box_ring(-16'000, -16'000, -15'990, -15'990), box_ring(16'000, 16'000, 16'010, 16'010)};
+    for (const std::vector<Ring>& area : {std::vector<Ring>{box_ring(0, 0, 3900, 3900)}, bars, dots, far}) {
+        const Glyph written = strokes_of_area({.code = U'x', .area = area, .advance = 1000});
+        EXPECT_TRUE(written.strokes.empty());
+        EXPECT_EQ(written.area, area);
+    }
+    const std::vector<Ring> block{box_ring(0, 0, 1000, 1000)};
+    EXPECT_FALSE(strokes_of_area({.code = U'x', .area = block, .advance = 1000}).strokes.empty()) << "a square of ink";
 }
 
 }  // namespace

@@ -1,12 +1,13 @@
 #include "writer/text/text.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
-#include "io/font/installed_fonts.h"
+#include "small_font.h"
 
 namespace tuft::writer {
 namespace {
@@ -22,22 +23,51 @@ TEST(Text, ItsGroupIsNamedByItWithoutBreaksAndSlashes) {
     EXPECT_EQ(text_of("\xe6\xb0\xb8\n\xe6\x98\xa5").group, "\xe6\xb0\xb8 \xe6\x98\xa5");
 }
 
+/// A font of T, and of a solid square of almost four sides.
+std::string small_font() {
+    const std::string file = testing::TempDir() + "/tuft_text_" + std::to_string(getpid()) + ".ttf";
+    const std::vector<FontRing> t{
+        {{50, 600}, {50, 700}, {650, 700}, {650, 600}, {400, 600}, {400, 0}, {300, 0}, {300, 600}}};
+    write_font(file, {{'T', t}, {'I', {font_box(300, 0, 400, 700)}}, {'W', {font_box(0, 0, 3900, 3900)}}});
+    return file;
+}
+
 // Fitted to its outlines, a character of a font is strokes of a brush, equal ones the same; a pen's styles fill it.
 TEST(Text, CharactersOfAFontAreStrokesWhereTheyAreFitted) {
-    const io::InstalledFont font = io::find_font({.families = {"sans-serif"}});
-    if (font.file.empty()) GTEST_SKIP() << "no font is installed";
+    const std::string font = small_font();
     TextReader reader;
-    const Glyph filled = reader.read({.text = "T", .glyphs = font.family}).lines[0][0];
-    EXPECT_TRUE(filled.strokes.empty());
-    const Text fitted = reader.read({.text = "TT", .glyphs = font.family, .fit = true});
-    for (const Glyph& glyph : fitted.lines[0]) {
+    EXPECT_TRUE(reader.read({.text = "T", .glyphs = font}).lines[0][0].strokes.empty());
+    const Text fitted = reader.read({.text = "TTW", .glyphs = font, .fit = true});
+    const std::vector<Glyph>& line = fitted.lines[0];
+    for (const Glyph& glyph : {line[0], line[1]}) {
         EXPECT_TRUE(glyph.area.empty());
         ASSERT_EQ(glyph.strokes.size(), 2u);
         for (const GlyphStroke& stroke : glyph.strokes) EXPECT_FALSE(stroke.outline.empty());
     }
-    EXPECT_EQ(fitted.lines[0][0].strokes[0].median, fitted.lines[0][1].strokes[0].median);
-    EXPECT_FALSE(
-        reader.read({.text = "T", .glyphs = font.family, .style = "line", .fit = true}).lines[0][0].area.empty());
+    EXPECT_EQ(line[0].strokes[0].median, line[1].strokes[0].median);
+    EXPECT_FALSE(line[2].area.empty());
+    EXPECT_EQ(fitted.kept_filled, 1u) << "W";
+    const Text pen = reader.read({.text = "T", .glyphs = font, .style = "line", .fit = true});
+    EXPECT_FALSE(pen.lines[0][0].area.empty());
+    EXPECT_EQ(pen.kept_filled, 0u) << "none was to be strokes";
+}
+
+// A text is read at each key: only the character that is new is taken apart, and it can be stopped.
+TEST(Text, ACharacterOfAFontIsTakenApartOnce) {
+    const std::string font = small_font();
+    TextReader reader;
+    int asked = 0;
+    const auto count = [&](std::string_view, double) { return ++asked, true; };
+    const auto stop = [](std::string_view, double) { return false; };
+    const auto strokes = [&](const std::string& text, const ProgressFn& progress) {
+        return reader.read({.text = text, .glyphs = font, .fit = true}, progress).lines[0][0].strokes;
+    };
+    EXPECT_THROW(strokes("TW", stop), Cancelled);
+    const std::vector<GlyphStroke> first = strokes("TW", count);
+    EXPECT_EQ(asked, 1);
+    EXPECT_EQ(strokes("TWT", stop)[0].median, first[0].median) << "nothing is left to be stopped, not of W either";
+    EXPECT_EQ(reader.read({.text = "IT", .glyphs = font, .fit = true}, count).lines[0][1].strokes.size(), 2u);
+    EXPECT_EQ(asked, 2);
 }
 
 TEST(Text, EmptyLinesAtItsEndAreNone) {

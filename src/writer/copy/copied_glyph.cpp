@@ -23,6 +23,10 @@ constexpr double kCornerHead = 1.25;   // of the half width: a corner lies so fa
 constexpr double kInset = 12;          // units between the begin of a centre line and the edge
 
 constexpr double kAreaCell = 2, kAreaMargin = 8;  // units, of the cells of a font's area
+constexpr double kMostAreaInk = kSide * kSide;    // units², of a font's character: its whole square
+constexpr std::size_t kMostAreaLines = 1024;      // that thinning leaves of one
+constexpr double kMostAreaWork = 1e9;             // of its cells and points: a second to divide the cells
+constexpr std::size_t kChunk = 16;                // points whose distances are bounded together
 
 /// The centre line of a stroke with half widths. `through`: where it runs through a junction.
 struct CopiedLine {
@@ -134,29 +138,104 @@ void begin_in_corner(CopiedLine& line, const InkClearance& room) {
     line.through.insert(line.through.begin(), 0);
 }
 
-/// Cells of each stroke.
-std::vector<Cells> areas_of(const Cells& ink, const std::vector<CopiedLine>& lines) {
-    Cells none = ink;
-    std::fill(none.inside.begin(), none.inside.end(), std::uint8_t{0});
-    std::vector<Cells> areas(lines.size(), none);
-    for (int j = 0; j < ink.height; ++j)
-        for (int i = 0; i < ink.width; ++i) {
-            if (!ink.at(i, j)) continue;
-            const Vec2 p = ink.centre(i, j);
-            const std::size_t cell = std::size_t(j) * ink.width + i;
-            double nearest = 1e300;
-            std::size_t owner = 0;
-            for (std::size_t s = 0; s < lines.size(); ++s)
-                for (std::size_t k = 0; k < lines[s].points.size(); ++k) {
-                    const Station& q = lines[s].points[k];
-                    const Vec2 d = p - q.centre;
-                    const double power = glm::dot(d, d) - q.half * q.half;
-                    if (power < nearest) nearest = power, owner = s;
-                    if (power <= 0 && lines[s].through[k]) areas[s].inside[cell] = 1;
-                }
-            areas[owner].inside[cell] = 1;
+double power_of(const Station& q, const Vec2& p) {
+    const Vec2 d = p - q.centre;
+    return glm::dot(d, d) - q.half * q.half;
+}
+
+/// Points of a line beside each other, and a disc that holds them.
+struct Chunk {
+    std::size_t line = 0, first = 0, last = 0;
+    Vec2 middle{0};
+    double reach = 0, half = 0;  // of the widest
+
+    /// No power of a point of it is less.
+    double least_power(const Vec2& p) const {
+        const double away = std::max(0.0, glm::distance(p, middle) - reach);
+        return away * away - half * half;
+    }
+};
+
+std::vector<Chunk> chunks_of(const std::vector<CopiedLine>& lines) {
+    std::vector<Chunk> chunks;
+    for (std::size_t s = 0; s < lines.size(); ++s)
+        for (std::size_t k = 0; k < lines[s].points.size(); k += kChunk) {
+            Chunk c{.line = s, .first = k, .last = std::min(k + kChunk, lines[s].points.size())};
+            c.middle = lines[s].points[(c.first + c.last) / 2].centre;
+            for (std::size_t i = c.first; i < c.last; ++i) {
+                c.reach = std::max(c.reach, glm::distance(c.middle, lines[s].points[i].centre));
+                c.half = std::max(c.half, lines[s].points[i].half);
+            }
+            chunks.push_back(c);
         }
-    return areas;
+    return chunks;
+}
+
+/// Divides the cells of the ink among the strokes.
+class Division {
+  public:
+    Division(const Cells& ink, const std::vector<CopiedLine>& lines)
+        : ink_(ink), lines_(lines), chunks_(chunks_of(lines)), cells_(lines.size()) {
+        const Chunk* near = chunks_.empty() ? nullptr : &chunks_.front();
+        for (int j = 0; j < ink.height; ++j)
+            for (int i = 0; i < ink.width; ++i)
+                if (ink.at(i, j) && near) near = divide(i, j, *near);
+    }
+
+    /// Cells of a stroke, no more of them than its box has.
+    Cells area(std::size_t stroke) const {
+        int left = ink_.width, right = -1, bottom = ink_.height, top = -1;
+        for (const auto& [i, j] : cells_[stroke]) {
+            left = std::min(left, i), right = std::max(right, i);
+            bottom = std::min(bottom, j), top = std::max(top, j);
+        }
+        Cells out{.cell = ink_.cell};
+        if (right < 0) return out;
+        out.lo = ink_.lo + ink_.cell * Vec2(left, bottom);
+        out.width = right - left + 1, out.height = top - bottom + 1;
+        out.inside.assign(std::size_t(out.width) * out.height, 0);
+        for (const auto& [i, j] : cells_[stroke]) out.inside[std::size_t(j - bottom) * out.width + i - left] = 1;
+        return out;
+    }
+
+  private:
+    /// Gives a cell to its strokes. Returns the points that are nearest; `near`: those of the cell before.
+    const Chunk* divide(int i, int j, const Chunk& near) {
+        const Vec2 p = ink_.centre(i, j);
+        double bound = 1e300;
+        for (std::size_t k = near.first; k < near.last; ++k)
+            bound = std::min(bound, power_of(lines_[near.line].points[k], p));
+        bound = std::max(bound, 0.0) + 1e-6;  // more than rounding
+        double nearest = 1e300;
+        const Chunk* owner = &near;
+        std::size_t last = lines_.size();  // line that the cell was given to last
+        for (const Chunk& chunk : chunks_) {
+            if (chunk.least_power(p) > bound) continue;
+            const CopiedLine& line = lines_[chunk.line];
+            for (std::size_t k = chunk.first; k < chunk.last; ++k) {
+                const double power = power_of(line.points[k], p);
+                if (power < nearest) nearest = power, owner = &chunk;
+                if (power > 0 || !line.through[k] || last == chunk.line) continue;
+                last = chunk.line;
+                cells_[last].push_back({i, j});
+            }
+        }
+        cells_[owner->line].push_back({i, j});  // perhaps a second time
+        return owner;
+    }
+
+    const Cells& ink_;
+    const std::vector<CopiedLine>& lines_;
+    std::vector<Chunk> chunks_;
+    std::vector<std::vector<std::pair<int, int>>> cells_;
+};
+
+/// Width or height of rings, whichever is more.
+double extent_of(const std::vector<Ring>& rings) {
+    Vec2 lo(1e300), hi(-1e300);
+    for (const Ring& ring : rings)
+        for (const Vec2& p : ring) lo = glm::min(lo, p), hi = glm::max(hi, p);
+    return std::max(0.0, std::max(hi.x - lo.x, hi.y - lo.y));
 }
 
 }  // namespace
@@ -170,25 +249,29 @@ Glyph copied_glyph(const Cells& ink, const Skeleton& skeleton, const StrokeOrder
         const Piece& piece = skeleton.pieces[first.piece];
         if (skeleton.nodes[first.reversed ? piece.to : piece.from].n_pieces == 1) begin_in_corner(lines.back(), room);
     }
-    const std::vector<Cells> areas = areas_of(ink, lines);
+    const Division division(ink, lines);
     Glyph glyph{.code = code};
     for (std::size_t s = 0; s < lines.size(); ++s) {
         GlyphStroke stroke;
         for (const Station& p : lines[s].points) stroke.median.push_back(p.centre);
-        stroke.outline = boundaries(areas[s], kRingPasses);
+        stroke.outline = boundaries(division.area(s), kRingPasses);
         glyph.strokes.push_back(std::move(stroke));
     }
     return glyph;
 }
 
 Glyph strokes_of_area(const Glyph& glyph) {
+    if (extent_of(glyph.area) + 2 * kAreaMargin > kWidestCopied) return glyph;
     Cells ink = cells_over(glyph.area, kAreaCell, kAreaMargin);
-    if (std::max(ink.width, ink.height) * kAreaCell > kWidestCopied) return glyph;
     fill(ink, glyph.area);
-    if (ink.count() == 0) return glyph;
-    const Skeleton skeleton = skeleton_of(ink);
+    const auto n = static_cast<double>(ink.count());
+    if (n == 0 || n * kAreaCell * kAreaCell > kMostAreaInk) return glyph;
+    const Skeleton skeleton = skeleton_of(ink, kMostAreaLines);
+    if (skeleton.pieces.empty() || skeleton.pieces.size() > kMostStrokes) return glyph;
+    std::size_t points = 0;
+    for (const Piece& piece : skeleton.pieces) points += piece.line.size();
+    if (n * static_cast<double>(points) > kMostAreaWork) return glyph;
     const StrokeOrder order = order_by_rules(skeleton);
-    if (order.empty() || order.size() > kMostStrokes) return glyph;
     Glyph out = glyph;
     out.strokes = copied_glyph(ink, skeleton, order, glyph.code).strokes;
     out.area.clear();

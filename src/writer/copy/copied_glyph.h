@@ -16,12 +16,14 @@ namespace tuft::writer {
 /// A centre line runs straight through junctions of its stroke; at a corner its arms are continued to where they meet.
 /// A cell of ink belongs to the stroke whose centre line is nearest by d² − r², with r the half width there, and
 /// besides to each that covers it where it runs through a junction. Preconditions: the order is one of the skeleton's
-/// pieces. Cost: cells × points of the lines.
+/// pieces. Cost: cells × points of the lines / 16.
 Glyph copied_glyph(const Cells& ink, const Skeleton& skeleton, const StrokeOrder& order, char32_t code);
 
 /// Returns a character of a font as strokes, as a brush would write it: its area is thinned, and each stroke, in the
-/// order by rules, has its part of the area as its outline. Unchanged: a character without an area, one more than
-/// `kWidestCopied` wide or high, and one in which no centre line is found. Cost: that of `copied_glyph`.
+/// order by rules, has its part of the area as its outline. Fonts are untrusted, and work and memory are bounded.
+/// Unchanged: a character without an area, one more than `kWidestCopied` wide or high, one of more ink than its square
+/// holds, one that thinning leaves more than 1024 lines of or that has more than `kMostStrokes` pieces, one of more
+/// than 1e9 pairs of cells and points, and one in which no centre line is found. Cost: that of `copied_glyph`.
 Glyph strokes_of_area(const Glyph& glyph);
 inline constexpr double kWidestCopied = 4 * kSide;  ///< units
 

@@ -214,9 +214,10 @@ void merge_junctions(Skeleton& s) {
 std::vector<Vec2> blob_line(const Cells& ink, const Vec2& at, double reach) {
     Vec2 mean(0);
     double xx = 0, xy = 0, yy = 0, n = 0;
+    const Vec2 lo = glm::floor((at - reach - ink.lo) / ink.cell), hi = glm::ceil((at + reach - ink.lo) / ink.cell);
     const auto each = [&](auto&& f) {
-        for (int j = 0; j < ink.height; ++j)
-            for (int i = 0; i < ink.width; ++i)
+        for (int j = std::max(0, static_cast<int>(lo.y)); j < std::min(ink.height, static_cast<int>(hi.y)); ++j)
+            for (int i = std::max(0, static_cast<int>(lo.x)); i < std::min(ink.width, static_cast<int>(hi.x)); ++i)
                 if (const Vec2 p = ink.centre(i, j); ink.at(i, j) && glm::distance(p, at) < reach) f(p);
     };
     each([&](const Vec2& p) { mean += p, n += 1; });
@@ -316,12 +317,13 @@ double InkClearance::at(const Vec2& p) const {
     return static_cast<double>(clearance_[std::size_t(j) * ink_.width + i]);
 }
 
-Skeleton skeleton_of(const Cells& ink) {
+Skeleton skeleton_of(const Cells& ink, std::size_t most) {
     const InkClearance room(ink);
     Cells lines = ink;
     thin(lines);
     Skeleton s = Tracer(lines, room).trace();
     add_blobs(s);
+    if (s.pieces.size() > most) return {};
     prune(s);
     merge_junctions(s);
     prune(s);

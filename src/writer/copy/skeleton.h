@@ -39,8 +39,9 @@ struct Skeleton {
 /// of the larger radius are one. Pieces are cut at corners (`make_stroke_line`, over at
 /// least 1.3 half widths). Free ends are continued straight to 12
 /// units before the edge, as centre lines of typefaces end. A blob without a line has one along its longest direction.
-/// Cost: cells × half width.
-Skeleton skeleton_of(const Cells& ink);
+/// Where thinning leaves more than `most` lines: nothing. What follows compares lines with each other.
+/// Cost: cells, edge × half width, lines².
+Skeleton skeleton_of(const Cells& ink, std::size_t most = static_cast<std::size_t>(-1));
 
 /// A place where a person cuts a piece.
 struct PieceCut {

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "core/error.h"
 #include "core/files/modified_time.h"
+#include "core/hash.h"
+#include "core/system/parallel.h"
 #include "stroke/drawing/drawing.h"
 #include "writer/copy/copied_glyph.h"
 #include "writer/fit/writer.h"
@@ -14,7 +17,8 @@
 namespace tuft::writer {
 namespace {
 
-constexpr double kTangentReach = 0.25;  // parts of the side over which the direction of a path is taken
+constexpr double kTangentReach = 0.25;   // parts of the side over which the direction of a path is taken
+constexpr std::size_t kMostKept = 2000;  // characters of a font as strokes, of texts before
 
 bool is_drawn(const Glyph& glyph, const Style& style) {
     return glyph.single_line || style.kind != HandKind::brush;
@@ -105,22 +109,17 @@ const std::vector<Glyph>& only_line(const Text& text) {
     return text.lines.front();
 }
 
-/// Makes strokes of the areas of fonts, of equal ones once.
-void make_strokes(std::vector<std::vector<Glyph>>& lines) {
-    std::vector<std::pair<std::vector<Ring>, std::vector<GlyphStroke>>> made;
-    for (std::vector<Glyph>& line : lines)
-        for (Glyph& glyph : line) {
-            if (glyph.area.empty()) continue;
-            const auto known = std::find_if(made.begin(), made.end(), [&](auto& m) { return m.first == glyph.area; });
-            if (known != made.end()) {
-                glyph.strokes = known->second;
-                glyph.area.clear();
-                continue;
-            }
-            Glyph written = strokes_of_area(glyph);
-            if (written.area.empty()) made.emplace_back(glyph.area, written.strokes);
-            glyph = std::move(written);
-        }
+std::uint64_t hash_of(const std::vector<Ring>& area) {
+    std::uint64_t hash = area.size();
+    for (const Ring& ring : area) hash = hash_span(std::span<const Vec2>(ring), hash);
+    return hash;
+}
+
+template <class F>
+void for_areas(Text& text, F&& f) {
+    for (std::vector<Glyph>& line : text.lines)
+        for (Glyph& glyph : line)
+            if (!glyph.area.empty()) f(glyph);
 }
 
 }  // namespace
@@ -145,8 +144,41 @@ Glyph TextReader::copy(const TextRequest& request) {
     return copied_glyph(copied_->ink.cells, copied_->skeleton, copied_->order, name.empty() ? U'\u25A1' : name[0]);
 }
 
-Text TextReader::read(const TextRequest& request) {
-    Text text{.style = load_style(request.style), .lines = {}, .layout = {}, .group = group_of(request.text)};
+/// Makes strokes of the areas of fonts, of equal ones once.
+void TextReader::make_strokes(Text& text, const ProgressFn& progress) {
+    std::map<std::uint64_t, const Glyph*> own;
+    for_areas(text, [&](const Glyph& glyph) { own.emplace(hash_of(glyph.area), &glyph); });
+    if (made_.size() > kMostKept) std::erase_if(made_, [&](const auto& made) { return !own.contains(made.first); });
+    std::erase_if(own, [&](const auto& character) { return made_.contains(character.first); });
+    const std::vector<std::pair<std::uint64_t, const Glyph*>> fresh(own.begin(), own.end());
+    // In batches, so that progress is reported, a stop is heard, and what was made till then is kept.
+    const std::size_t batch = 2 * static_cast<std::size_t>(std::max(1, thread_count()));
+    for (std::size_t begin = 0; begin < fresh.size(); begin += batch) {
+        report(progress, "writing", static_cast<double>(begin) / static_cast<double>(fresh.size()));
+        const std::size_t n = std::min(batch, fresh.size() - begin);
+        std::vector<Glyph> written(n);
+        parallel_for(n, 1, [&](std::size_t lo, std::size_t hi) {
+            for (std::size_t i = lo; i < hi; ++i) written[i] = strokes_of_area(*fresh[begin + i].second);
+        });
+        for (std::size_t i = 0; i < n; ++i) made_[fresh[begin + i].first] = std::move(written[i].strokes);
+    }
+    for_areas(text, [&](Glyph& glyph) {
+        const std::vector<GlyphStroke>& strokes = made_.at(hash_of(glyph.area));
+        if (strokes.empty()) {
+            ++text.kept_filled;
+            return;
+        }
+        glyph.strokes = strokes;
+        glyph.area.clear();
+    });
+}
+
+Text TextReader::read(const TextRequest& request, const ProgressFn& progress) {
+    Text text{.style = load_style(request.style),
+              .lines = {},
+              .layout = {},
+              .group = group_of(request.text),
+              .kept_filled = 0};
     text.layout.spacing = text.style.spacing;
     text.layout.line_spacing = text.style.line_spacing;
     copied_.reset();
@@ -158,6 +190,7 @@ Text TextReader::read(const TextRequest& request) {
     if (request.glyphs != path_) {
         own_.reset();
         path_.clear();
+        made_.clear();
         if (!request.glyphs.empty()) own_ = open_glyphs(request.glyphs);
         path_ = request.glyphs;
     }
@@ -168,7 +201,7 @@ Text TextReader::read(const TextRequest& request) {
     std::vector<std::u32string> lines = lines_of(request.text);
     while (lines.size() > 1 && lines.back().empty()) lines.pop_back();
     text.lines = glyphs_of(lines, order);
-    if (request.fit && text.style.kind == HandKind::brush) make_strokes(text.lines);
+    if (request.fit && text.style.kind == HandKind::brush) make_strokes(text, progress);
     for (std::vector<Glyph>& line : text.lines) space_scripts(line);
     return text;
 }
@@ -196,6 +229,11 @@ Vec2 extent_of(const Text& text) {
             hi = glm::max(hi, c + Vec2(lines[l][i].advance / kSide, 0));
         }
     return glm::max(hi - lo, Vec2(1e-3));
+}
+
+Message kept_filled_note(const Text& text) {
+    return Message("characters that stay filled, too large, too heavy or too intricate for strokes of a brush: {}",
+                   text.kept_filled);
 }
 
 double length_of(const Text& text) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,6 +10,7 @@
 #include <vector>
 
 #include "core/files/disk_cache.h"
+#include "core/message.h"
 #include "core/system/progress.h"
 #include "stroke/journal/entries.h"
 #include "writer/copy/correction.h"
@@ -36,18 +39,21 @@ struct TextRequest {
 struct Text {
     Style style;
     std::vector<std::vector<Glyph>> lines;
-    LayoutOptions layout;  ///< spacings of the style, unless they are set
-    std::string group;     ///< name of its group of strokes
+    LayoutOptions layout;         ///< spacings of the style, unless they are set
+    std::string group;            ///< name of its group of strokes
+    std::size_t kept_filled = 0;  ///< characters of a font that were to be strokes of a brush and are not
 
     bool blank() const;  ///< no glyph has a stroke or an area
 };
 
-/// Reads texts. Sources of characters stay open from one text to the next. Not shared by threads.
+/// Reads texts. From one text to the next sources of characters stay open, and characters of a font that became strokes
+/// are kept. Not shared by threads.
 class TextReader {
   public:
     /// Throws `Error` that names all missing characters, for an unknown style or source, and for a picture that cannot
-    /// be copied, or whose name is more than one character.
-    Text read(const TextRequest& request);
+    /// be copied, or whose name is more than one character. Cost of a font that is fitted: about 0.05 s for each
+    /// character that was not in the texts before, with `progress`.
+    Text read(const TextRequest& request, const ProgressFn& progress = {});
     /// The picture of the last request taken apart; nothing where it had none.
     const std::optional<CopiedPicture>& copied() const { return copied_; }
     /// The picture itself. Precondition: `copied`.
@@ -55,12 +61,15 @@ class TextReader {
 
   private:
     Glyph copy(const TextRequest& request);
+    void make_strokes(Text& text, const ProgressFn& progress);
 
     std::filesystem::path path_, picture_path_;
     std::optional<std::filesystem::file_time_type> picture_time_;
     io::Image8 picture_;
     std::optional<CopiedPicture> copied_;
     std::unique_ptr<GlyphSource> own_, bundled_;
+    /// Characters of `own_` as strokes, by the hash of their area; without strokes: it stays filled.
+    std::map<std::uint64_t, std::vector<GlyphStroke>> made_;
 };
 
 /// Returns the name of the group of a text's strokes: its lines (`lines_of`) beside each other, without slashes
@@ -69,6 +78,9 @@ std::string group_of(std::string_view text);
 
 /// Returns width and height of the text's squares at a side of 1.
 Vec2 extent_of(const Text& text);
+
+/// Returns what is to be said of characters that are kept filled. Precondition: there are some.
+Message kept_filled_note(const Text& text);
 
 /// Returns the length of a text of one line along a path, parts of the side.
 double length_of(const Text& text);
