@@ -131,32 +131,39 @@ LetteringReader::Read LetteringReader::read(const writer::TextRequest& request) 
         if (request.text.empty() && request.like.empty()) return out;
         // Before it is read: what is written meanwhile is shown after the next read.
         const auto time = modified_time(request.like);
-        writer::Text text = reader_.read(request);
+        writer::Text text = reader_.read(request, [this](std::string_view, double) { return !stop_; });
         if (!text.blank()) out.text = std::move(text);
         out.copy = reader_.copied();
         if (out.copy && (request.like != shown_ || time != shown_time_))
             out.picture = small_picture(reader_.picture(), kMostAcross);
         shown_ = out.copy ? request.like : "", shown_time_ = time;
+    } catch (const Cancelled&) {
+        out.stopped = true;
     } catch (const std::exception& error) {
         out.fault = message_of(error);
     }
     return out;
 }
 
+void LetteringReader::take(Lettering& l, Read read) {
+    if (read.stopped) return;
+    l.text = std::move(read.text);
+    l.fault = std::move(read.fault);
+    ++l.revision;
+    // What was edited meanwhile is newer.
+    if (l.wanted == asked_ && !l.reread) l.copy.take(std::move(read.copy), asked_.correction);
+    if (!read.picture.rgb.empty()) l.copy.picture = std::move(read.picture), l.copy.fresh = true;
+}
+
 void LetteringReader::update(Lettering& l) {
     if (reading_.valid()) {
+        if (!(l.wanted == asked_)) stop_ = true;
         if (reading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return lay_out(l);
-        Read read = reading_.get();
-        l.text = std::move(read.text);
-        l.fault = std::move(read.fault);
-        ++l.revision;
-        // What was edited meanwhile is newer.
-        if (l.wanted == asked_ && !l.reread) l.copy.take(std::move(read.copy), asked_.correction);
-        if (!read.picture.rgb.empty()) l.copy.picture = std::move(read.picture), l.copy.fresh = true;
+        take(l, reading_.get());
     }
     lay_out(l);
-    if (l.wanted == asked_ && !l.reread) return;
-    asked_ = l.wanted, l.reread = false;
+    if (l.wanted == asked_ && !l.reread && !stop_) return;
+    asked_ = l.wanted, l.reread = false, stop_ = false;
     reading_ = std::async(std::launch::async, [this, request = asked_] { return read(request); });
 }
 

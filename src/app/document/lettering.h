@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <future>
 #include <optional>
 #include <string>
@@ -64,7 +65,10 @@ void lay_out(Lettering& lettering);
 /// Reads the characters of a text on a thread of its own: sources may be large.
 class LetteringReader {
   public:
-    /// Takes what was read, lays it out, and begins to read when `wanted` has changed. Returns at once.
+    ~LetteringReader() { stop_ = true; }
+
+    /// Takes what was read, lays it out, and begins to read when `wanted` has changed; stops what is being read then.
+    /// Returns at once.
     void update(Lettering& lettering);
     /// Returns true while the text of `lettering` is not what its `wanted` says.
     bool busy(const Lettering& lettering) const {
@@ -77,14 +81,17 @@ class LetteringReader {
         Message fault;
         std::optional<writer::CopiedPicture> copy;
         SmallPicture picture;  ///< where it is another one than before; else empty
+        bool stopped = false;  ///< nothing was read
     };
     Read read(const writer::TextRequest& request);
+    void take(Lettering& lettering, Read read);
 
     writer::TextRequest asked_;    // of the last reading
     writer::TextReader reader_;    // used by one thread at a time
     std::filesystem::path shown_;  // picture that was given last; likewise
     std::optional<std::filesystem::file_time_type> shown_time_;
-    std::future<Read> reading_;
+    std::atomic<bool> stop_ = false;
+    std::future<Read> reading_;  // last: it waits for its thread
 };
 
 /// A path on the model, and the length on it at which the middle of the text stands, metres.

@@ -167,15 +167,18 @@ void lettering_panel(Session& s) {
     direction_row(ui, l.direction);
     if (l.wanted.like.empty()) source_row(ui, l, s.dialogs.file);
     copy_row(s, l);
-    if (!l.wanted.glyphs.empty() && l.wanted.like.empty())
+    const bool brushed = !l.text || l.text->style.kind == writer::HandKind::brush;
+    if (!l.wanted.glyphs.empty() && l.wanted.like.empty() && brushed)
         ui.toggle("To their outlines", l.wanted.fit,
-                  "Strokes are fitted until their ink covers the outlines that the source states");
+                  "Strokes are fitted until their ink covers the outlines that the source states; filled characters of "
+                  "a font become strokes");
     ui.toggle("Snap", s.tools.place.snaps,
               "To the plane of symmetry and level with other drawings; Ctrl places it freely");
     ImGui::SameLine();
     ui.toggle("In mm", s.tools.place.has_fields, "Place in millimetres");
     if (s.tools.place.has_fields) place_fields(ui, s.tools);
     // Last: it comes and goes with the cursor over the model, and no button may move under a click.
+    if (l.text && l.text->kept_filled > 0) ui.note(ui.sentence(writer::kept_filled_note(*l.text)));
     fault_line(ui, l.fault.empty() ? s.tools.place.fault : l.fault);
     ImGui::EndDisabled();
     ImGui::End();

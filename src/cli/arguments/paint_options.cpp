@@ -307,8 +307,7 @@ void add_write_options(CLI::App* w, Write& write) {
         ->type_name("STYLE");
     w->add_flag("--fit", write.fit,
                 "follow the outlines of the source, where it states them; characters of a font, else filled, become "
-                "strokes of the "
-                "brush");
+                "strokes of the brush (kaishu, xingshu), but for those too large or too intricate");
     w->add_option("--direction", write.direction,
                   "horizontal, vertical (columns from right to left), rim (level round the model, in the middle "
                   "--place) or curve (along --curve)")

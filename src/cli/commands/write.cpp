@@ -37,7 +37,7 @@ std::string report_copy(const writer::CopiedPicture& copy, const Write& a) {
 /// A text and what is to be said of it.
 struct TextToWrite {
     writer::Text text;
-    std::string note;  ///< for the user; empty: none
+    std::vector<std::string> notes;  ///< for the user
 };
 
 TextToWrite read_text(const Write& a) {
@@ -53,9 +53,12 @@ TextToWrite read_text(const Write& a) {
                      .like = a.like,
                      .correction = {.threshold = a.threshold, .cuts = writer::parse_cuts(a.cuts), .order = a.order},
                      .fit = a.fit}),
-        ""};
-    if (reader.copied()) out.note = report_copy(*reader.copied(), a);
+        {}};
     writer::Text& text = out.text;
+    if (reader.copied()) out.notes.push_back(report_copy(*reader.copied(), a));
+    if (text.kept_filled > 0) out.notes.push_back(writer::kept_filled_note(text).text());
+    if (a.fit && text.style.kind != writer::HandKind::brush)
+        out.notes.push_back("--fit changes nothing: the style is that of a pen, not of a pointed brush");
     if (text.blank()) throw UsageError("--text: there is nothing to write in it");
     text.layout.direction = *writer::direction_named(a.direction);
     if (a.spacing > 0) text.layout.spacing = a.spacing;
@@ -149,7 +152,7 @@ int run(const Write& a) {
     const bool along = direction == writer::Direction::rim || direction == writer::Direction::curve;
     return paint(a, {.load =
                          [&](Console& console) {
-                             if (!read.note.empty()) console.note(read.note);
+                             for (const std::string& note : read.notes) console.note(note);
                              return std::vector<stroke::JournalEntry>{};
                          },
                      .place =
