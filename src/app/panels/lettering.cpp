@@ -178,7 +178,10 @@ void lettering_panel(Session& s) {
     ui.toggle("In mm", s.tools.place.has_fields, "Place in millimetres");
     if (s.tools.place.has_fields) place_fields(ui, s.tools);
     // Last: it comes and goes with the cursor over the model, and no button may move under a click.
-    if (l.text && l.text->kept_filled > 0) ui.note(ui.sentence(writer::kept_filled_note(*l.text)));
+    if (l.text && l.text->kept_filled > 0)
+        ui.note(ui.sentence(
+            Message("Characters that stay filled, too large, too heavy or too intricate for strokes of a brush: {}",
+                    l.text->kept_filled)));
     fault_line(ui, l.fault.empty() ? s.tools.place.fault : l.fault);
     ImGui::EndDisabled();
     ImGui::End();

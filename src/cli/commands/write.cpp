@@ -56,7 +56,10 @@ TextToWrite read_text(const Write& a) {
         {}};
     writer::Text& text = out.text;
     if (reader.copied()) out.notes.push_back(report_copy(*reader.copied(), a));
-    if (text.kept_filled > 0) out.notes.push_back(writer::kept_filled_note(text).text());
+    if (text.kept_filled > 0)
+        out.notes.push_back(
+            fmt::format("characters that stay filled, too large, too heavy or too intricate for strokes of a brush: {}",
+                        text.kept_filled));
     if (a.fit && text.style.kind != writer::HandKind::brush)
         out.notes.push_back("--fit changes nothing: the style is that of a pen, not of a pointed brush");
     if (text.blank()) throw UsageError("--text: there is nothing to write in it");

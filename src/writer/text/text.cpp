@@ -231,11 +231,6 @@ Vec2 extent_of(const Text& text) {
     return glm::max(hi - lo, Vec2(1e-3));
 }
 
-Message kept_filled_note(const Text& text) {
-    return Message("characters that stay filled, too large, too heavy or too intricate for strokes of a brush: {}",
-                   text.kept_filled);
-}
-
 double length_of(const Text& text) {
     double whole = 0;
     for (const Glyph& g : only_line(text)) whole += (text.layout.spacing * g.advance + g.after) / kSide;

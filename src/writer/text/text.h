@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "core/files/disk_cache.h"
-#include "core/message.h"
 #include "core/system/progress.h"
 #include "stroke/journal/entries.h"
 #include "writer/copy/correction.h"
@@ -78,9 +77,6 @@ std::string group_of(std::string_view text);
 
 /// Returns width and height of the text's squares at a side of 1.
 Vec2 extent_of(const Text& text);
-
-/// Returns what is to be said of characters that are kept filled. Precondition: there are some.
-Message kept_filled_note(const Text& text);
 
 /// Returns the length of a text of one line along a path, parts of the side.
 double length_of(const Text& text);
