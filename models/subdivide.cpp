@@ -3,6 +3,7 @@
 #include <CGAL/subdivision_method_3.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "cage.h"
@@ -25,7 +26,7 @@ Point to_point(const Vec3& p) {
     return {p.x, p.y, p.z};
 }
 
-/// Catmull–Clark weights, blended with those of a crease curve by the sharpness.
+/// Catmull–Clark weights, blended by the sharpness with those of a crease curve and of a corner.
 class CreaseMask : public CGAL::CatmullClark_mask_3<Mesh> {
     using Base = CGAL::CatmullClark_mask_3<Mesh>;
 
@@ -41,22 +42,21 @@ class CreaseMask : public CGAL::CatmullClark_mask_3<Mesh> {
         out = to_point((1 - s) * to_vec(out) + s * middle);
     }
 
+    /// A weak crease that ends on a sharp line pulls the vertex towards a corner, never off the line.
     void vertex_node(Vertex v, Point& out) {
-        int n_sharp = 0;
-        double sum = 0;
-        Vec3 ends{0};
+        std::vector<std::pair<double, Vec3>> sharp;
         for (const Mesh::Halfedge_index h : CGAL::halfedges_around_target(v, *mesh_)) {
             const double s = sharpness_[mesh_->edge(h)];
-            if (s == 0) continue;
-            ++n_sharp;
-            sum += s;
-            ends += at(mesh_->source(h));
+            if (s > 0) sharp.emplace_back(s, at(mesh_->source(h)));
         }
         Base::vertex_node(v, out);
-        if (n_sharp < 2) return;
-        const double s = std::min(1.0, sum / n_sharp);
-        const Vec3 corner = n_sharp == 2 ? 0.75 * at(v) + 0.125 * ends : at(v);
-        out = to_point((1 - s) * to_vec(out) + s * corner);
+        if (sharp.size() < 2) return;
+        std::stable_sort(sharp.begin(), sharp.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+        const bool meet = sharp.size() > 2;
+        const double third = meet ? std::min(1.0, sharp[2].first) : 0;
+        const double second = std::min(1.0, meet ? sharp[1].first : 0.5 * (sharp[0].first + sharp[1].first));
+        const Vec3 curve = 0.75 * at(v) + 0.125 * (sharp[0].second + sharp[1].second);
+        out = to_point((1 - second) * to_vec(out) + (second - third) * curve + third * at(v));
     }
 
   private:
