@@ -48,6 +48,52 @@ TEST(RowHair, EndsOfStripsOfOtherLengthsAreOneSmoothCurve) {
     EXPECT_NEAR(place(0, -1).x - place(0, 0).x, place(0, 0).x - place(0, 1).x, 1e-15);
 }
 
+/// Two strips side by side along y, of hair along x, the second `ahead`; the first one's free edge is 3 mm shorter.
+Recycled<Trail> two_strips(double ahead, double reach) {
+    Recycled<Trail> trails;
+    for (int k = 0; k < 2; ++k) {
+        Trail trail{.branch = k, .strip = true, .edge_short = k == 0 ? 3e-3 : 0};
+        for (const double x : {0.0, -2e-3}) {
+            Cut cut{.centre = {x + k * ahead, 2e-3 * k}, .a = 1.3e-3, .b = 3e-4};
+            cut.e = {0, 1, 0};
+            if (k == 0) cut.reach.x = reach;
+            trail.cuts.push_back(cut);
+            trail.along.push_back(0.9 + x);
+        }
+        trails.push_back(std::move(trail));
+    }
+    trails[0].openings.push_back({1, {0.0, 0.0}});
+    return trails;
+}
+
+/// A row that turns to be square to its hair keeps its toe: what it drops changes as much as the row does.
+TEST(RowHair, TheToeOfASquareRowDropsToo) {
+    const double half = Cut::kStripChord * 1.3e-3;
+    const auto drop = [&](double slant) {
+        Recycled<Trail> trails = two_strips(2 * slant * half, 1);
+        fill_rows(trails);
+        return trails[0].cuts.front().bent(-Cut::kStripChord).x;
+    };
+    EXPECT_LT(drop(0), -half) << "3 mm, of a half width of 1.2";
+    EXPECT_NEAR(drop(0.0099), drop(0.0101), 0.001 * half);
+    EXPECT_NEAR(drop(0), drop(0.0101), 0.03 * half);
+}
+
+/// A toe touches up to where its hair reaches, or less where the surface bounds it: both are of the same half width.
+TEST(RowHair, AToeTouchesNoFurtherThanTheSurface) {
+    const auto reach = [](double bounded) {
+        Recycled<Trail> trails = two_strips(0, bounded);
+        fill_rows(trails);
+        return trails[0].cuts.front().reach.x;
+    };
+    const double hair = reach(1);
+    ASSERT_GT(hair, 0.1);
+    ASSERT_LT(hair, 0.95);
+    EXPECT_EQ(reach(0.5 * (hair + 1)), hair);
+    EXPECT_EQ(reach(0.5 * hair), 0.5 * hair);
+    EXPECT_EQ(reach(-0.5), -0.5) << "all that touches lies beyond the middle";
+}
+
 /// Of a strip whose end goes aslant, the edges are displaced along the hair by ±slant beside what the strip is.
 TEST(RowHair, TheEdgesOfAStripThatGoesAslantSlideAlongTheirHair) {
     constexpr double kHalf = 1e-3, kAside = 3e-4, kSlant = 4e-4, kBow = 2e-4;  // metres

@@ -73,6 +73,23 @@ TEST(RowLanding, OfAnEvenRowIsAtOnce) {
     }
 }
 
+/// Bent lengths of hair of one length are chord sums, which differ from pose to pose; a strip's reach goes with them,
+/// at most as a length does.
+TEST(RowLanding, DoesNotLeapWithBentLengths) {
+    const auto reach_of = [](double longer) {
+        brush::TuftState tuft = lying_row(1e-4, 1.5e-4);
+        for (brush::Section& s : tuft.branches[1].sections) s.centre.x *= 1 + longer;
+        Recycled<double> out;
+        for (const Trail& trail : find_trails(tuft, Frame{}, {}, 26e-3, 0))
+            for (const Cut& cut : trail.cuts) out.push_back(cut.reach.x);
+        return out;
+    };
+    const Recycled<double> even = reach_of(0), bent = reach_of(1e-6);
+    ASSERT_EQ(even.size(), bent.size());
+    ASSERT_LT(*std::min_element(even.begin(), even.end()), 0.9) << "nothing is bounded";
+    for (std::size_t i = 0; i < even.size(); ++i) EXPECT_NEAR(bent[i], even[i], 1e-5) << i;
+}
+
 /// A row on its edge that is sheared lies more closely than it is wide: its second spine is 0.4 pitches up, and midway
 /// to it the hair is in the air by 0.2. Its own half width would reach the surface 2 mm ahead of the first one.
 TEST(RowLanding, OnItsEdgeTouchesWithItsLowestHairOnly) {
@@ -112,6 +129,7 @@ TEST(RowLanding, AFilbertLandsFromItsMiddle) {
         // Straight hair reaches furthest; a spine stands for a strip of 2.4 mm.
         EXPECT_LT(width, s * p.width + 2 * p.tip_radius) << press;
         EXPECT_GT(width, s * p.width - 0.75 * p.width / p.spines) << press;
+        EXPECT_NEAR(-lo, hi, 1e-6 * width) << "is its own mirror image: rounding of 31 solved steps";
     }
 }
 

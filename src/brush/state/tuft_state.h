@@ -43,7 +43,8 @@ struct Branch {
     double ink_share = 1;  ///< of the tuft's ink; shares sum to one
     /// Corners of the hair's section where that is a strip, convex, over the semi-axes at ψ and across; else empty.
     Recycled<Vec2> strip;
-    double edge_short = 0;  ///< metres, by how much the hair at the free edge of an outermost strip is shorter
+    double rest_length = 1;  ///< of the hair, over the tuft's
+    double edge_short = 0;   ///< metres, by how much the hair at the free edge of an outermost strip is shorter
 };
 
 /// Energy of the whole spine, joules; sub-spines follow it. The hand's work against `TuftState::force` and `moment`

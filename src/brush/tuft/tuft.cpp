@@ -221,6 +221,7 @@ TuftState bend_wide(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> 
         lost -= solved.spines[k].result.dissipation;
         solved.spines[k].branch.ink_share = spine.share;
         solved.spines[k].branch.strip = spine.strip;
+        solved.spines[k].branch.rest_length = spine.rest_length;
         solved.spines[k].branch.edge_short = spine.edge_short;
         add_spine(p, spine, std::move(solved.spines[k]), pose.rotation * spine.root, state);
     }

@@ -37,11 +37,12 @@ struct Spine {
     Recycled<double> rest_radius;  ///< [n+1] m; √(a b) where the section is no circle
     /// [n+1] m, half-widths at rest along the ferrule's broad side and across it; empty: a circle of `rest_radius`.
     Recycled<Vec2> rest_section;
-    Recycled<Vec2> strip;   ///< corners of its part of the mouth, see ferrule.h; empty: a disc
-    double edge_short = 0;  ///< m, see FerruleSpine
-    Vec3 root{0};           ///< m, ferrule frame
-    double lean = 0;        ///< rad, of the clamp towards +x of the ferrule
-    double share = 1;       ///< of the hair
+    Recycled<Vec2> strip;    ///< corners of its part of the mouth, see ferrule.h; empty: a disc
+    double rest_length = 1;  ///< over the tuft's
+    double edge_short = 0;   ///< m, see FerruleSpine
+    Vec3 root{0};            ///< m, ferrule frame
+    double lean = 0;         ///< rad, of the clamp towards +x of the ferrule
+    double share = 1;        ///< of the hair
     /// [n+1] unit, ferrule frame: its x and y carried along the bent spine; or empty.
     Recycled<Vec3> broad, across;
     Vec3 wide{1, 0, 0};     ///< unit, ferrule frame: direction e at the root of the last step

@@ -237,6 +237,7 @@ Recycled<Spine> make_spines(const Preset& p, const Profile& profile) {
         Spine spine;
         spine.root = {set.x, set.y, 0};
         spine.strip = strip_corners(p, set);
+        spine.rest_length = set.length;
         spine.edge_short = set.edge_short;
         spine.lean = set.lean;
         spine.share = set.share;

@@ -102,7 +102,7 @@ class BranchSurface {
     double place(double metres) const {
         const auto next =
             std::upper_bound(from_tip_.begin() + static_cast<std::ptrdiff_t>(cap_), from_tip_.end(), metres);
-        if (next == from_tip_.end()) return end();
+        if (next == from_tip_.end() || cap_ + 1 >= from_tip_.size()) return end();
         const auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - from_tip_.begin(), cap_ + 1)) - 1;
         const double run = from_tip_[i + 1] - from_tip_[i];
         return double(i) + (run > 0 ? std::clamp((metres - from_tip_[i]) / run, 0.0, 1.0) : 0);
@@ -251,8 +251,8 @@ Recycled<Stretch> touching_stretches(const BranchSurface& surface) {
 constexpr double kLanded = 0.5;  // of a spine's overlap, that its neighbour touches with when it has wholly landed
 // Of its length, by which a neighbour's hair differs at most, and from which on they do not lie side by side.
 constexpr double kSideBySide = 0.12, kApart = 0.2;
-constexpr double kOneLength = 1e-9;  // metres, by which equal lengths differ
-constexpr double kFarthest = 3;      // times its half width, that a strip touches to one side
+constexpr double kOfOneLength = 0.01;  // of its length, by which hair of one length at rest differs where it is bent
+constexpr double kFarthest = 3;        // times its half width, that a strip touches to one side
 // Part of a strip's broad axis on the surface, and cosine between it and the line to the neighbour, up to which the
 // strip stands on its edge, and from which on it lies beside the neighbour.
 constexpr double kStandsAside = 0.6, kLiesBeside = 0.8;
@@ -287,8 +287,13 @@ Cut extrapolate_cut(const Cut& own, const Cut& inner) {
 /// Bounds strips by where the underside between them and a neighbour that has not landed leaves the surface.
 class RowLanding {
   public:
-    RowLanding(Recycled<Trail>& trails, std::span<const Stretch> stretches, std::span<const BranchSurface> surfaces)
-        : trails_(trails), stretches_(stretches), surfaces_(surfaces), most_(surfaces.size(), -1.0) {
+    RowLanding(Recycled<Trail>& trails, std::span<const Stretch> stretches, std::span<const BranchSurface> surfaces,
+               std::span<const brush::Branch> branches)
+        : trails_(trails),
+          stretches_(stretches),
+          surfaces_(surfaces),
+          branches_(branches),
+          most_(surfaces.size(), -1.0) {
         for (const Trail& trail : trails)
             for (const Cut& cut : trail.cuts)
                 largest_overlap(trail.branch) = std::max(largest_overlap(trail.branch), cut.overlap());
@@ -309,20 +314,24 @@ class RowLanding {
   private:
     template <class OtherCut>
     void bound(std::size_t k, int neighbour, double farthest, double landed_part, OtherCut other_of) {
-        const BranchSurface& surface = surfaces_[static_cast<std::size_t>(neighbour)];
-        const BranchSurface& own_surface = surfaces_[static_cast<std::size_t>(trails_[k].branch)];
+        const auto branch = static_cast<std::size_t>(neighbour),
+                   own_branch = static_cast<std::size_t>(trails_[k].branch);
+        const BranchSurface &surface = surfaces_[branch], &own_surface = surfaces_[own_branch];
         const double length = surface.from_tip(surface.end()), own_length = own_surface.from_tip(1e9);
-        // Hair of other lengths lies side by side at equal distances from the ferrule.
+        // Hair of one length at rest lies side by side at equal parts, of other lengths at equal distances from the
+        // ferrule. Bent lengths, between centres of sections, differ from pose to pose.
+        const bool one_length = branches_[branch].rest_length == branches_[own_branch].rest_length;
         const double longer = length - own_length;
         const double length_difference =
-            smooth_step((std::abs(longer) / length - kSideBySide) / (kApart - kSideBySide));
+            one_length ? smooth_step(std::abs(longer) / (kOfOneLength * length))
+                       : smooth_step((std::abs(longer) / length - kSideBySide) / (kApart - kSideBySide));
         const double landed = std::max(smooth_step(landed_part / kLanded), length_difference);
         if (landed >= 1) return;
         for (std::size_t i = 0; i < trails_[k].cuts.size(); ++i) {
             Cut& own = trails_[k].cuts[i];
             const double s = std::lerp(stretches_[k].begin, stretches_[k].end, sample_places()[i]);
-            const double beside = std::abs(longer) > kOneLength ? surface.place(own_surface.from_tip(s) + longer)
-                                                                : std::min(s, surface.end());
+            const double beside =
+                one_length ? std::min(s, surface.end()) : surface.place(own_surface.from_tip(s) + longer);
             const Cut other = other_of(own, surface.at(beside));
             if (other.overlap() >= 0) continue;
             const TouchingPart to = touching_part(own, other);
@@ -335,6 +344,7 @@ class RowLanding {
     Recycled<Trail>& trails_;
     std::span<const Stretch> stretches_;
     std::span<const BranchSurface> surfaces_;
+    std::span<const brush::Branch> branches_;
     Recycled<double> most_;  // overlap of each branch, metres; −1: it does not touch
 };
 
@@ -454,7 +464,8 @@ Recycled<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, st
             stretches.push_back(stretch);
         }
     }
-    if (tuft.strips && surfaces.size() == count) bound_strips({found, stretches, surfaces}, found, tuft.openings);
+    if (tuft.strips && surfaces.size() == count)
+        bound_strips({found, stretches, surfaces, tuft.branches}, found, tuft.openings);
     return found;
 }
 

@@ -91,9 +91,10 @@ struct TrailPart {
 };
 
 /// Returns the touching parts of all branches, cut into sections; see `outlines_of` (outline.h) for the arguments.
-/// `length` is the tuft's, metres. Between two spines of a row of about one length the underside is linear at equal
-/// distances from the ferrule: where one touches by o > 0 and the other is o' above the surface, what touches ends at
-/// o / (o + o') of the way. So a row that lands or leaves spine by spine goes out evenly to its sides (`Cut::reach`).
+/// `length` is the tuft's, metres. Between two spines of a row the underside is linear at equal distances from the
+/// ferrule, between spines of one length at rest at equal parts of their hair: where one touches by o > 0 and the other
+/// is o' above the surface, what touches ends at o / (o + o') of the way. So a row that lands or leaves spine by spine
+/// goes out evenly to its sides (`Cut::reach`).
 Recycled<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
                             double length, double film);
 

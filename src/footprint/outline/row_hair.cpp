@@ -150,14 +150,15 @@ void bend_section(Cut& cut, const Halves& halves, const Vec2& spine, const Vec2&
     const auto bounded = [&](double x) { return std::clamp(x, -kMostAslant * half, kMostAslant * half); };
     const double mean = part * bounded(0.5 * (r + l)), slant = part * bounded(0.5 * (r - l)),
                  bow = part * bounded(0.5 * (middle - 0.5 * (r + l)));
-    if (std::max({std::abs(mean), std::abs(slant), std::abs(bow)}) < kStraight * half) return;
+    // What is missing at the free edge beyond what the straight line goes back by.
+    const bool drops = missing > 0 && !(right && left);
+    const double drop = drops ? bounded(std::max(0.0, missing * part + (right ? l : r) - middle)) : 0;
+    if (std::max({std::abs(mean), std::abs(slant), std::abs(bow), drop}) < kStraight * half) return;
     cut.centre += mean * hair;
     cut.slant = slant * hair;
     cut.bow = bow * hair;
-    if (missing <= 0 || (right && left)) return;
-    // What is missing at the free edge beyond what the straight line goes back by.
-    const double drop = std::max(0.0, missing * part + (right ? l : r) - middle);
-    cut.drop = -bounded(drop) * hair;
+    if (!drops) return;
+    cut.drop = -drop * hair;
     cut.free_side = right ? -1 : 1;
 }
 
@@ -165,6 +166,12 @@ void bend_section(Cut& cut, const Halves& halves, const Vec2& spine, const Vec2&
 double touching_hair(const Trail& trail) {
     const Cut &tip = trail.cuts.front(), &heel = trail.cuts.back();
     return glm::length(Vec3(tip.centre - heel.centre, tip.z - heel.z));
+}
+
+/// Metres of the tuft's hair, by what touches of a trail.
+double hair_metres(const Trail& trail) {
+    const double touching = trail.along.empty() ? 0 : trail.along.front() - trail.along.back();
+    return touching > 1e-9 ? touching_hair(trail) / touching : 0;
 }
 
 /// Part of an outermost strip's half width, towards its free edge, up to which the hair of a toe touches. `straight`:
@@ -186,7 +193,8 @@ double toe_reach(const Trail& trail, double straight) {
 void bound_toe(Cut& cut, const Halves& halves, double reach) {
     if (halves.to_next.has_value() == halves.to_last.has_value()) return;
     const bool with_row = way_along(halves.row, cut.broad(), 1) >= 0, free_with_row = !halves.to_next;
-    (free_with_row == with_row ? cut.reach.y : cut.reach.x) *= reach;
+    double& side = free_with_row == with_row ? cut.reach.y : cut.reach.x;
+    side = std::min(side, reach);
 }
 
 /// Whether `other` is the next in its row, and as many of its sections are known.
@@ -205,10 +213,9 @@ void fill_rows(Recycled<Trail>& trails) {
     for (std::size_t k = 0; k < trails.size(); ++k)
         for (std::size_t l = 0; l < trails.size(); ++l) {
             if (!trails[k].strip || !is_followed_by(trails[k], trails[l])) continue;
-            const double touching = trails[k].along.empty() ? 0 : trails[k].along.front() - trails[k].along.back();
-            const double metres = touching > 1e-9 ? touching_hair(trails[k]) / touching : 0;  // of the tuft's hair
-            straight[k] = std::max(0.0, 0.5 * metres * (trails[l].length - trails[k].length));
-            straight[l] = std::max(0.0, 0.5 * metres * (trails[k].length - trails[l].length));
+            const double longer = 0.5 * (trails[l].length - trails[k].length);
+            straight[k] = std::max(0.0, hair_metres(trails[k]) * longer);
+            straight[l] = std::max(0.0, hair_metres(trails[l]) * -longer);
             const double differ = smooth_step(std::abs(trails[l].length - trails[k].length) / kOneLength);
             for (std::size_t i = 0; i < trails[k].cuts.size(); ++i) {
                 const Cut &p = trails[k].cuts[i], &q = trails[l].cuts[i];
