@@ -49,6 +49,17 @@ TEST_F(Write, ACharacterIsCopiedFromAPicture) {
     }
 }
 
+TEST_F(Write, AFitThatChangesNothingIsSaid) {
+    const std::string write =
+        "write " + model("sheet.ply") + " --text 一 --size 20 --place 0,0,0 --atlas-size 256 --fit ";
+    for (const auto& [style, reason] : {std::pair("kaishu", "no outlines"), {"line", "a pen"}}) {
+        const Ran ran = tuft(write + "--style " + style, "export XDG_CACHE_HOME='" + path("cache") + "';");
+        EXPECT_EQ(ran.status, 0);
+        EXPECT_NE((ran.err + ran.out).find("--fit changes nothing"), std::string::npos) << ran.err;
+        EXPECT_NE((ran.err + ran.out).find(reason), std::string::npos) << ran.err;
+    }
+}
+
 TEST_F(Write, MissingCharactersAndWrongOptionsAreOneLine) {
     const Ran missing = written("--text '永鑫'");
     EXPECT_EQ(missing.status, 1);

@@ -40,6 +40,13 @@ struct TextToWrite {
     std::vector<std::string> notes;  ///< for the user
 };
 
+bool has_outlines(const writer::Text& text) {
+    for (const auto& line : text.lines)
+        for (const writer::Glyph& glyph : line)
+            if (std::ranges::any_of(glyph.strokes, [](const auto& s) { return !s.outline.empty(); })) return true;
+    return false;
+}
+
 TextToWrite read_text(const Write& a) {
     if (a.text.empty() && a.like.empty()) throw UsageError("there is nothing to write: --text or --like is missing");
     if (!a.like.empty() && writer::characters_of(a.text).size() > 1)
@@ -62,6 +69,8 @@ TextToWrite read_text(const Write& a) {
                         text.kept_filled));
     if (a.fit && text.style.kind != writer::HandKind::brush)
         out.notes.push_back("--fit changes nothing: the style is that of a pen, not of a pointed brush");
+    else if (a.fit && !has_outlines(text))
+        out.notes.push_back("--fit changes nothing: the source has centre lines of these characters, no outlines");
     if (text.blank()) throw UsageError("--text: there is nothing to write in it");
     text.layout.direction = *writer::direction_named(a.direction);
     if (a.spacing > 0) text.layout.spacing = a.spacing;

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <time.h>
-
 #include <cstdint>
+#include <ctime>
 
 /// \file
 /// Clocks of the system. Called by the loop of an arm, which sleeps until a time of the monotonic one, and by
