@@ -1,7 +1,10 @@
 #include "mesh/part_groups.h"
 
+#include <charconv>
 #include <map>
 #include <set>
+#include <string_view>
+#include <system_error>
 #include <tuple>
 
 namespace tuft::mesh {
@@ -19,26 +22,44 @@ class SceneNames {
   public:
     explicit SceneNames(std::span<const ScenePart> parts) {
         for (const ScenePart& part : parts) {
-            if (part.own_material < 0) continue;
-            nodes_of_[part.own_material].insert(part.node);
             materials_of_[part.node].insert(part.own_material);
+            if (part.own_material >= 0) nodes_of_[part.own_material].insert(part.node);
         }
     }
 
     /// The name of a part's group, and the one node whose parts are in it.
     std::pair<std::string, std::int32_t> of(const ScenePart& part) const {
         if (!part.group.empty()) return {part.group, part.object.empty() ? kAnyNode : part.node};
-        const bool painted = is_decorated(part.material);
-        const bool names_it = part.own_material >= 0 && !part.material.empty();
-        if (names_it && !painted && nodes_of_.at(part.own_material).size() == 1) return {part.material, kAnyNode};
+        const bool names_it = part.own_material >= 0 && !part.material.empty() && !is_decorated(part.material);
         if (part.object.empty()) return {part.material, kAnyNode};
-        if (names_it && !painted && materials_of_.at(part.node).size() > 1)
-            return {part.object + " / " + part.material, part.node};
-        return {part.object, part.node};
+        if (!names_it || materials_of_.at(part.node).size() == 1) return {part.object, part.node};
+        if (nodes_of_.at(part.own_material).size() == 1) return {part.material, kAnyNode};
+        return {part.object + " / " + part.material, part.node};
     }
 
   private:
     std::map<std::int32_t, std::set<std::int32_t>> nodes_of_, materials_of_;
+};
+
+/// Which group a part is in: one for each material, but one for the decorated materials of all pages.
+class GroupIndex {
+  public:
+    /// `n_groups`: the number of a new group.
+    std::uint32_t get(const ScenePart& part, const std::string& name, std::int32_t node, std::uint32_t n_groups) {
+        const auto [known, is_new] = of_material_.try_emplace({name, node, part.own_material}, n_groups);
+        const std::uint32_t page = decorated_page(part.material);
+        if (!is_new || page == 0) return known->second;
+        const bool glass = part.material.find(kGlassSuffix) != std::string::npos;
+        std::vector<std::uint32_t>& alike = paged_[{name, node, glass}];
+        const std::size_t n = n_on_page_[{name, node, glass, page}]++;  // a group has one picture on a page
+        if (n == alike.size()) alike.push_back(n_groups);
+        return known->second = alike[n];
+    }
+
+  private:
+    std::map<std::tuple<std::string, std::int32_t, std::int32_t>, std::uint32_t> of_material_;
+    std::map<std::tuple<std::string, std::int32_t, bool>, std::vector<std::uint32_t>> paged_;
+    std::map<std::tuple<std::string, std::int32_t, bool, std::uint32_t>, std::size_t> n_on_page_;
 };
 
 /// UTF-8 without what is beyond this many bytes.
@@ -51,25 +72,33 @@ std::string cut(std::string name, std::size_t most) {
 
 }  // namespace
 
+std::uint32_t decorated_page(std::string_view material) {
+    const std::string_view name = kDecoratedMaterial;
+    if (!material.starts_with(name) || material.size() < name.size() + 5 || material[name.size()] != '.') return 0;
+    const std::string_view number = material.substr(name.size() + 1, 4), rest = material.substr(name.size() + 5);
+    std::uint32_t page = 0;
+    const auto [end, fault] = std::from_chars(number.data(), number.data() + number.size(), page);
+    const bool is_number = fault == std::errc{} && end == number.data() + number.size();
+    return is_number && page >= 1001 && page <= 2000 && (rest.empty() || rest[0] == '.') ? page : 0;
+}
+
 PartGroups group_parts(std::span<const ScenePart> parts) {
     PartGroups groups;
     const SceneNames names(parts);
-    std::map<std::tuple<std::string, std::int32_t, std::int32_t>, std::uint32_t> group_of;
+    GroupIndex index;
     std::set<std::string> taken;
     std::map<std::string, int> same_name;
     for (const ScenePart& part : parts) {
         const auto [name, node] = names.of(part);
-        const auto [it, is_new] =
-            group_of.try_emplace({name, part.own_material, node}, static_cast<std::uint32_t>(groups.names.size()));
-        if (is_new) {
-            std::string unlike = cut(name, kMaxPartNameBytes);
-            for (int& n = same_name[name]; !taken.insert(unlike).second;) {
-                const std::string number = " " + std::to_string(n++ + 2);
-                unlike = cut(name, kMaxPartNameBytes - number.size()) + number;
-            }
-            groups.names.push_back(std::move(unlike));
+        const auto n_groups = static_cast<std::uint32_t>(groups.names.size());
+        groups.of_part.push_back(index.get(part, name, node, n_groups));
+        if (groups.of_part.back() != n_groups) continue;
+        std::string unlike = cut(name, kMaxPartNameBytes);
+        for (int& n = same_name[name]; !taken.insert(unlike).second;) {
+            const std::string number = " " + std::to_string(n++ + 2);
+            unlike = cut(name, kMaxPartNameBytes - number.size()) + number;
         }
-        groups.of_part.push_back(it->second);
+        groups.names.push_back(std::move(unlike));
     }
     return groups;
 }

@@ -125,7 +125,7 @@ TEST(Gltf, BaseColourIsFactorTimesPictureTimesVertexColours) {
     j["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 0;  // the positions serve
     const mesh::PolygonSoup soup = read(j);
     ASSERT_EQ(soup.materials.size(), 1u);
-    EXPECT_EQ(soup.group_names, std::vector<std::string>{"m"});
+    EXPECT_EQ(soup.group_names, std::vector<std::string>{"tri"});
     ASSERT_TRUE(soup.materials[0].picture);
     EXPECT_EQ(soup.materials[0].picture->rgb, kRedOverGreen.pixels);
     EXPECT_TRUE(soup.materials[0].tinted);

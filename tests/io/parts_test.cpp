@@ -11,6 +11,8 @@
 #include "atlas/texels/texel_map.h"
 #include "core/error.h"
 #include "core/files/files.h"
+#include "gltf_maker.h"
+#include "ink/colour/base_colour.h"
 #include "io/export/export.h"
 #include "io/image/image.h"
 #include "io/model/read_model.h"
@@ -24,6 +26,7 @@ namespace {
 
 using namespace testing;
 using nlohmann::json;
+using test::GltfMaker;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -31,78 +34,6 @@ using ::testing::UnorderedElementsAre;
 namespace fs = std::filesystem;
 
 const Image8 kTwoPixels{.width = 1, .height = 2, .channels = 3, .pixels = {255, 0, 0, 0, 255, 0}};
-
-/// A glTF file that is put together in memory.
-class GltfMaker {
-  public:
-    json document{{"asset", {{"version", "2.0"}}}, {"scene", 0}};
-
-    int add_view(const void* data, std::size_t size) {
-        buffer_.resize((buffer_.size() + 3) / 4 * 4);
-        document["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", size}});
-        const auto* from = static_cast<const char*>(data);
-        buffer_.insert(buffer_.end(), from, from + size);
-        return static_cast<int>(document["bufferViews"].size()) - 1;
-    }
-    template <class T>
-    int add_accessor(const std::vector<T>& values, int component, const char* type, json more = json::object()) {
-        more["bufferView"] = add_view(values.data(), values.size() * sizeof(T));
-        more["componentType"] = component;
-        more["count"] = values.size();
-        more["type"] = type;
-        document["accessors"].push_back(std::move(more));
-        return static_cast<int>(document["accessors"].size()) - 1;
-    }
-    /// A box from -1/2 to 1/2, scaled and moved: 24 vertices, 12 triangles, two sets of UVs.
-    json box(const Vec3f& at, const Vec3f& size, int material) {
-        std::vector<Vec3f> points;
-        std::vector<Vec2f> first, second;
-        std::vector<std::uint16_t> indices;
-        for (int axis = 0; axis < 3; ++axis)
-            for (const float side : {-0.5f, 0.5f}) {
-                const auto base = static_cast<std::uint16_t>(points.size());
-                for (const Vec2f& c :
-                     {Vec2f(-0.5f, -0.5f), Vec2f(0.5f, -0.5f), Vec2f(0.5f, 0.5f), Vec2f(-0.5f, 0.5f)}) {
-                    Vec3f p;
-                    p[axis] = side;
-                    p[(axis + 1) % 3] = side > 0 ? c.x : -c.x;
-                    p[(axis + 2) % 3] = c.y;
-                    points.push_back(at + size * p);
-                    first.push_back((c + 0.5f + Vec2f(float(axis), side > 0 ? 1.0f : 0.0f)) / 3.0f);
-                    second.push_back(4.0f * c);
-                }
-                for (const int i : {0, 1, 2, 0, 2, 3}) indices.push_back(static_cast<std::uint16_t>(base + i));
-            }
-        const Vec3f lo = at - 0.5f * size, hi = at + 0.5f * size;
-        json attributes{{"POSITION", add_accessor(points, 5126, "VEC3",
-                                                  {{"min", {lo.x, lo.y, lo.z}}, {"max", {hi.x, hi.y, hi.z}}})},
-                        {"TEXCOORD_0", add_accessor(first, 5126, "VEC2")},
-                        {"TEXCOORD_1", add_accessor(second, 5126, "VEC2")}};
-        json primitive{{"attributes", std::move(attributes)}, {"indices", add_accessor(indices, 5123, "SCALAR")}};
-        if (material >= 0) primitive["material"] = material;
-        return primitive;
-    }
-    std::vector<char> glb() {
-        document["buffers"] = json::array({{{"byteLength", buffer_.size()}}});
-        std::string text = document.dump();
-        text.resize((text.size() + 3) / 4 * 4, ' ');
-        std::vector<char> bytes;
-        const auto put = [&](const void* data, std::size_t size) {
-            bytes.insert(bytes.end(), static_cast<const char*>(data), static_cast<const char*>(data) + size);
-        };
-        const auto number = [&](std::size_t value) {
-            const auto v = static_cast<std::uint32_t>(value);
-            put(&v, 4);
-        };
-        put("glTF", 4), number(2), number(28 + text.size() + buffer_.size());
-        number(text.size()), put("JSON", 4), put(text.data(), text.size());
-        number(buffer_.size()), put("BIN\0", 4), put(buffer_.data(), buffer_.size());
-        return bytes;
-    }
-
-  private:
-    std::vector<char> buffer_;
-};
 
 /// A truck: a body of paint and glass, two wheels of one mesh (one of them mirrored) on an axle, a
 /// textured flag whose normals lie by other UVs.
@@ -523,6 +454,47 @@ TEST(PartsOfNodes, AreTheSameInWhatIsExported) {
             export_painted(folder / "twice.glb", twice, ink_on(twice, object, "decorated"));
             EXPECT_EQ(read_model(folder / "twice.glb").group_names, model.mesh->group_names) << object;
         }
+    }
+}
+
+/// One object on two pages as exports write it: all UVs lie in one square, each material has its picture.
+std::vector<char> paged_glb(bool with_extras) {
+    GltfMaker maker;
+    json& d = maker.document;
+    for (const int page : {0, 1}) {
+        const Image8 picture{
+            .width = 1, .height = 1, .channels = 3, .pixels = {255, static_cast<std::uint8_t>(255 * page), 0}};
+        const std::vector<unsigned char> png = png_bytes(view_of(picture));
+        const std::string name = page == 0 ? "decorated.1001" : "decorated.1002";
+        d["images"].push_back({{"mimeType", "image/png"}, {"bufferView", maker.add_view(png.data(), png.size())}});
+        d["textures"].push_back({{"source", page}});
+        d["materials"].push_back({{"name", name}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", page}}}}}});
+    }
+    d["meshes"].push_back({{"primitives", {maker.box({0, 0, 0}, Vec3f(1), 0), maker.box({2, 0, 0}, Vec3f(1), 1)}}});
+    d["nodes"] = json::parse(R"([{"name":"Hood","mesh":0}])");
+    if (with_extras) d["nodes"][0]["extras"]["tuft_parts"] = {"Hood", "Hood"};
+    d["scenes"] = {{{"nodes", {0}}}};
+    return maker.glb();
+}
+
+TEST(PartsOfNodes, OnTwoPagesAreOneWithBothPictures) {
+    const Folder folder("pages");
+    for (const bool with_extras : {false, true}) {
+        const std::vector<char> bytes = paged_glb(with_extras);
+        write_file(folder / "in.glb", bytes.data(), bytes.size());
+        const stroke::Model model = model_of(read_model(folder / "in.glb"));
+        ASSERT_THAT(model.mesh->group_names, ElementsAre("Hood"));
+        const ink::BaseColour colours = ink::base_colour_of(*model.mesh, model.atlas, model.texels);
+        std::set<std::pair<bool, int>> greens;
+        std::mutex guard;
+        atlas::visit_texels(*model.mesh, model.atlas, model.texels,
+                            [&](std::uint32_t slot, int texel, std::uint32_t t, const Vec3&) {
+                                const std::scoped_lock lock(guard);
+                                greens.insert({model.mesh->position(t, 0).x > 1, colours.tiles[slot].rgb[1][texel]});
+                            });
+        EXPECT_EQ(greens, (std::set<std::pair<bool, int>>{{false, 0}, {true, 255}})) << "by the place of the box";
+        export_painted(folder / "out.glb", model, ink_on(model, "Hood", "decorated.1002"));
+        EXPECT_THAT(read_model(folder / "out.glb").group_names, ElementsAre("Hood"));
     }
 }
 

@@ -18,6 +18,30 @@ TEST(PartGroups, OfNodesWithOneExportedNameAreOneEach) {
     EXPECT_THAT(groups.of_part, ElementsAre(0, 1));
 }
 
+// As Blender writes again what was exported: without extras, materials by page.
+TEST(PartGroups, OfOneNodeOnSeveralPagesAreOne) {
+    const std::vector<ScenePart> parts{
+        {.object = "Hood", .material = "decorated.1001", .node = 0, .own_material = 0},
+        {.object = "Hood", .material = "decorated.1002", .node = 0, .own_material = 1},
+        {.object = "Hood", .material = "decorated.1002.glass", .node = 0, .own_material = 2},
+        {.object = "Hood", .material = "decorated.1002.001", .node = 0, .own_material = 3},
+        {.object = "Door", .material = "decorated.1002", .node = 1, .own_material = 1},
+        {.object = "Lid", .material = "Page 1001", .node = 2, .own_material = 4},
+        {.object = "Lid", .material = "Page 1002", .node = 2, .own_material = 5}};
+    const PartGroups groups = group_parts(parts);
+    EXPECT_THAT(groups.names, ElementsAre("Hood", "Hood 2", "Hood 3", "Door", "Page 1001", "Page 1002"))
+        << "glass is a part of its own, and a page has one picture";
+    EXPECT_THAT(groups.of_part, ElementsAre(0, 0, 1, 2, 3, 4, 5));
+}
+
+TEST(PartGroups, OfNodesWithOneMaterialHaveTheirNames) {
+    const std::vector<ScenePart> parts{{.object = "Windscreen", .material = "Glass", .node = 0, .own_material = 0},
+                                       {.object = "Body", .material = "Paint", .node = 1, .own_material = 1},
+                                       {.object = "Body", .material = "Chrome", .node = 1, .own_material = 2},
+                                       {.object = "", .material = "Rubber", .node = 2, .own_material = 3}};
+    EXPECT_THAT(group_parts(parts).names, ElementsAre("Windscreen", "Paint", "Chrome", "Rubber"));
+}
+
 TEST(PartGroups, HaveNamesThatEntriesMayHave) {
     std::string long_name;
     for (int i = 0; i < 65; ++i) long_name += "\u91d1";  // 195 bytes

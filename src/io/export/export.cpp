@@ -71,16 +71,32 @@ std::vector<Vec2f> split_pages(const atlas::Atlas& atlas, ExportScene& scene) {
     return uvs;
 }
 
+/// Where one page of a part gets the decorated material, its other pages get it, too: it stays one part.
+void decorate_all_pages(const mesh::TriangleMesh& mesh, const mesh::SourceScene& source,
+                        std::vector<std::uint8_t>& decorated) {
+    std::vector<bool> paged(decorated.size()), in_group(mesh.group_names.size(), false);
+    for (std::size_t i = 0; i < paged.size(); ++i) paged[i] = mesh::decorated_page(source.parts[i].material) > 0;
+    if (mesh.triangle_groups.empty() || std::ranges::find(paged, true) == paged.end()) return;
+    for (std::size_t t = 0; t < mesh.n_triangles(); ++t)
+        if (const std::uint32_t part = mesh::part_of(mesh, t); paged[part] && decorated[part])
+            in_group[mesh.triangle_groups[t]] = true;
+    for (std::size_t t = 0; t < mesh.n_triangles(); ++t)
+        if (const std::uint32_t part = mesh::part_of(mesh, t); paged[part] && in_group[mesh.triangle_groups[t]])
+            decorated[part] = 1;
+}
+
 /// Parts that carry ink, those to which the file gave no material, and those whose pictures lie on UDIM tiles, for
 /// which the document of the scene has no place.
 std::vector<std::uint8_t> decorated_parts(const mesh::TriangleMesh& mesh, const mesh::SourceScene& source,
                                           const std::vector<std::uint8_t>& painted) {
     std::vector<std::uint8_t> decorated(source.parts.size(), 1);
     const auto is_tiled = [&](std::size_t i) {
-        return mesh.materials.size() == decorated.size() && !mesh.materials[i].tiles.empty();
+        return source.parts[i].primitive < 0 && mesh.materials.size() == decorated.size() &&
+               !mesh.materials[i].tiles.empty();
     };
     for (std::size_t i = 0; i < decorated.size() && i < painted.size(); ++i)
         decorated[i] = painted[i] || source.parts[i].own_material < 0 || is_tiled(i);
+    decorate_all_pages(mesh, source, decorated);
     return decorated;
 }
 

@@ -173,7 +173,7 @@ class Writer {
         const auto [it, is_new] = decorated_.try_emplace({page, double_sided, transmits}, -1);
         if (!is_new) return it->second;
         json pbr{{"metallicFactor", 0}, {"roughnessFactor", 0.3}}, material;
-        material["name"] = scene_.material_name(page) + (transmits ? ".glass" : "");
+        material["name"] = scene_.material_name(page) + (transmits ? mesh::kGlassSuffix : "");
         if (double_sided) material["doubleSided"] = true;
         for (const EncodedMap& map : maps_) {
             if (map.page != page || (map.kind == "transmission" && !transmits)) continue;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <set>
 #include <span>
 
 #include "core/error.h"
@@ -232,6 +233,7 @@ class Gatherer {
     void group_faces() {
         const mesh::PartGroups groups = mesh::group_parts(parts_);
         std::vector<std::uint32_t> group_of(groups.names.size(), kNone);
+        std::set<std::uint32_t> seen;  // parts with a page
         for (const std::uint32_t part : soup_.polygon_parts) {
             std::uint32_t& group = group_of[groups.of_part[part]];
             if (group == kNone) {
@@ -241,7 +243,29 @@ class Gatherer {
                 soup_.materials.push_back(material ? material_of(*material) : mesh::Material{.tinted = true});
             }
             soup_.polygon_groups.push_back(group);
+            if (page_of(part) > 0 && seen.insert(part).second) add_page(soup_.materials[group], part);
         }
+    }
+
+    std::uint32_t page_of(std::uint32_t part) const { return mesh::decorated_page(parts_[part].material); }
+
+    /// Gives a decorated part's material its picture on one page.
+    void add_page(mesh::Material& material, std::uint32_t part) {
+        const tinygltf::Material* own = element(model_.materials, parts_[part].own_material);
+        const mesh::PictureTile page{page_of(part), own ? material_of(*own).picture : nullptr};
+        const auto at = std::ranges::lower_bound(material.tiles, page.udim, {}, &mesh::PictureTile::udim);
+        if (!page.picture || (at != material.tiles.end() && at->udim == page.udim)) return;
+        material.tiles.insert(at, page);
+        material.picture = material.tiles.front().picture;
+    }
+
+    /// Moves the UVs of the last triangle to the page of its part: in the file all pages lie on the same square.
+    void move_to_page(std::uint32_t page) {
+        const std::span<Vec2f> uvs = std::span(soup_.corner_uvs).last(3);
+        const Vec2f middle = (uvs[0] + uvs[1] + uvs[2]) / 3.0f;
+        const auto tile = static_cast<int>(page - 1001);
+        const Vec2f shift = Vec2f(tile % 10, tile / 10) - glm::floor(middle);
+        for (Vec2f& uv : uvs) uv += shift;
     }
 
     /// Name that an export gave a primitive of a node; none where another program changed the primitives since.
@@ -318,6 +342,7 @@ class Gatherer {
         const bool list = mode == TINYGLTF_MODE_TRIANGLES;
         const std::size_t n_triangles = list ? n / 3 : (n >= 3 ? n - 2 : 0);
         if (soup_.corners.size() + 3 * n_triangles > kMaxCorners) throw Error(name_, "has too many triangles");
+        const std::uint32_t page = page_of(static_cast<std::uint32_t>(parts_.size()) - 1);
         std::size_t dropped = 0;
         for (std::size_t t = 0; t < n_triangles; ++t) {
             std::array<std::size_t, 3> at{3 * t, 3 * t + 1, 3 * t + 2};
@@ -330,6 +355,7 @@ class Gatherer {
                 continue;
             }
             for (const std::uint32_t i : index) add_corner(base, i, uvs);
+            if (page > 0 && uvs.rows.first) move_to_page(page);
             soup_.polygon_start.push_back(static_cast<std::uint32_t>(soup_.corners.size()));
             soup_.polygon_parts.push_back(static_cast<std::uint32_t>(parts_.size()) - 1);
         }

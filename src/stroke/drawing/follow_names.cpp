@@ -1,6 +1,7 @@
 #include "stroke/drawing/follow_names.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -117,23 +118,37 @@ class PartMatch {
         take();
     }
 
-    /// What is left of both by one name. Of files with parts, only where one group is left on either side: a deleted
-    /// screw is not every new part of steel.
+    /// Parts of one name that are left.
+    struct Left {
+        std::vector<std::uint32_t> groups;  ///< of each part
+        bool has_objects = false;
+
+        bool is_one() const { return std::ranges::adjacent_find(groups, std::not_equal_to{}) == groups.end(); }
+    };
+
+    /// What is left of both by one name. Of files with parts, only where one group is left on either side (a deleted
+    /// screw is not every new part of steel), or where as many parts lost their objects' names.
     template <class Was, class Is>
     void match_rest(Was name_before, Is name_now) {
-        std::map<std::string, std::set<std::uint32_t>> left;
-        std::map<std::string, std::vector<std::uint32_t>> now;
+        std::map<std::string, Left> before, now;
         for (std::size_t i = 0; i < was_.size(); ++i)
-            if (found_[i].empty()) left[name_before(was_[i])].insert(was_[i].group);
-        for (const GroupPart& part : is_)
-            if (!taken_[part.group]) now[name_now(part)].push_back(part.group);
-        for (std::size_t i = 0; i < was_.size(); ++i) {
-            const std::string name = name_before(was_[i]);
-            const auto same = now.find(name);
-            if (!found_[i].empty() || name.empty() || same == now.end()) continue;
-            const bool one = left[name].size() == 1 && std::set(same->second.begin(), same->second.end()).size() == 1;
-            if (one || !known_) found_[i] = same->second;
+            if (found_[i].empty()) before[name_before(was_[i])].groups.push_back(was_[i].group);
+        for (const GroupPart& part : is_) {
+            if (taken_[part.group]) continue;
+            Left& left = now[name_now(part)];
+            left.groups.push_back(part.group);
+            left.has_objects = left.has_objects || !part.object.empty();
         }
+        std::set<std::string> same;
+        for (const auto& [name, left] : before) {
+            const auto found = now.find(name);
+            if (name.empty() || found == now.end()) continue;
+            const bool lost_names = !found->second.has_objects && found->second.groups.size() == left.groups.size();
+            if (!known_ || (found->second.is_one() && (left.is_one() || lost_names))) same.insert(name);
+        }
+        for (std::size_t i = 0; i < was_.size(); ++i)
+            if (const std::string name = name_before(was_[i]); found_[i].empty() && same.contains(name))
+                found_[i] = now.at(name).groups;
         take();
     }
 
@@ -219,6 +234,38 @@ NewNames names_of_file(mesh::TriangleMesh& former, const std::set<std::string>& 
     return names;
 }
 
+/// Parts that entries name.
+std::set<std::string> named_in(const std::vector<JournalEntry>& entries) {
+    std::set<std::string> names;
+    for (const JournalEntry& entry : entries) {
+        if (const PartEdit* edit = entry.as<PartEdit>())
+            for (const Part& part : edit->parts) names.insert(part.name);
+        if (const MaskEdit* edit = entry.as<MaskEdit>(); edit && edit->mask.kind == MaskKind::group)
+            names.insert(edit->mask.groups.begin(), edit->mask.groups.end());
+    }
+    return names;
+}
+
+/// Says which named parts of the former model are one part today.
+void note_joined(const NewNames& names, const std::set<std::string>& named, std::vector<Message>& notes) {
+    constexpr std::size_t kMostNames = 3;
+    std::map<std::string, std::vector<std::string>> former;
+    for (const auto& [was, now] : names)
+        for (const std::string& name : now) former[name].push_back(was);
+    for (const auto& [name, were] : former) {
+        if (were.size() < 2 || std::ranges::none_of(were, [&](const auto& was) { return named.contains(was); }))
+            continue;
+        std::string list;
+        for (std::size_t i = 0; i < std::min(were.size(), kMostNames); ++i)
+            list += (i > 0 ? ", '" : "'") + were[i] + "'";
+        if (were.size() > kMostNames) list += " …";
+        notes.push_back(
+            Message("the parts {} are one part now, '{}': a mask of one of them holds all of it, and its "
+                    "state is the last that one of them got",
+                    list, name));
+    }
+}
+
 void rename(PartEdit& edit, const NewNames& names) {
     std::map<std::string, Part> parts;  // the last word on a part counts
     for (const Part& part : edit.parts) {
@@ -261,6 +308,7 @@ NamedEntries follow_names(std::vector<JournalEntry> entries, mesh::TriangleMesh&
     const NewNames names = has_parts(revised) ? match_names(former, revised, today) : names_of_file(former, today);
     const bool renames = changes(names);
     NamedEntries out{.entries = std::move(entries), .notes = {}};
+    if (renames) note_joined(names, named_in(out.entries), out.notes);
     for (JournalEntry& entry : out.entries) {
         if (PartEdit* edit = entry.as<PartEdit>(); edit && renames) rename(*edit, names);
         MaskEdit* edit = entry.as<MaskEdit>();

@@ -14,17 +14,18 @@ namespace tuft::stroke {
 /// Entries with the names of the revised model's parts.
 struct NamedEntries {
     std::vector<JournalEntry> entries;
-    std::vector<Message> notes;  ///< on masks that cover nothing any more
+    std::vector<Message> notes;  ///< on masks that cover nothing any more, and parts that became one
 };
 
 /// Gives the groups of the former model the names that their parts have in the revised one: what a part is called there
 /// depends on the others that share its material (mesh/part_groups.h).
 ///
 /// Parts are found by their places in both files' scenes: by object and material (equal ones in the order of the
-/// files); those that are left among the revised groups that are left, by object, then by name, then by material. A
-/// former group is all revised groups of its parts: each has its state, and a mask of it holds them all. A group whose
-/// parts are gone keeps a name that the revised model lacks, and masks leave it out unless it is their last. Where the
-/// revised file has no scene, former groups get the names of `mesh::with_part_groups`.
+/// files); those that are left among the revised groups that are left, by object, then by name, then by material, also
+/// where as many parts of one material have no object any more. A former group is all revised groups of its parts: each
+/// has its state, and a mask of it holds them all. A group whose parts are gone keeps a name that the revised model
+/// lacks, and masks leave it out unless it is their last. Where the revised file has no scene, former groups get the
+/// names of `mesh::with_part_groups`.
 NamedEntries follow_names(std::vector<JournalEntry> entries, mesh::TriangleMesh& former,
                           const mesh::TriangleMesh& revised);
 
