@@ -11,8 +11,11 @@ constexpr std::uint64_t kRest = 1000, kPress = 700, kTrouble = 100, kQuiet = 100
 constexpr std::uint64_t kPatience = 2000;  // periods in which an arm is to be picked up
 constexpr double kPush = 0.02;             // N
 constexpr double kLeastPush = 0.005;       // N
-constexpr double kStandsWithin = 0.02;     // m: somebody holds the arm, or it falls
-constexpr int kSlowest = 20;               // periods
+constexpr double kMostPush = 1.001 * kPush;
+constexpr double kLeastRamp = 0.4;      // s, of the half second in which force comes
+constexpr std::uint64_t kStays = 40;    // periods without force that are an end; an arm is picked up after 50
+constexpr double kStandsWithin = 0.02;  // m: somebody holds the arm, or it falls
+constexpr int kSlowest = 20;            // periods
 constexpr double kRisen = 0.95;
 
 }  // namespace
@@ -25,14 +28,18 @@ bool make_fault(TrialFault fault, DeviceState& state, ServoControl& control) {
     return fault != TrialFault::silence;
 }
 
-ArmCheck::ArmCheck(const DeviceLimits& limits) : law_{.limits = limits, .gain = 1}, servo_(law_) {
+ArmCheck::ArmCheck(const DeviceLimits& limits) : law_{.limits = limits, .gain = 1, .most_force = kPush}, servo_(law_) {
     places_.reserve(kRest);
 }
 
-// Where the arm stands, while it gets no force.
+// Where the arm stands, while it gets no force. One that has not spoken until now gets none at all.
 void ArmCheck::end_rest() {
+    if (places_.empty()) {
+        at_ = std::size(kTrialFaults);
+        return;
+    }
     Vec3 mean{0};
-    for (const Vec3& p : places_) mean += p / static_cast<double>(std::max<std::size_t>(places_.size(), 1));
+    for (const Vec3& p : places_) mean += p / static_cast<double>(places_.size());
     double least = std::numeric_limits<double>::max();
     for (std::size_t i = 0; i < places_.size(); ++i) {
         figures_.noise = std::max(figures_.noise, glm::distance(places_[i], mean));
@@ -56,7 +63,7 @@ void ArmCheck::watch(const DeviceState* fresh) {
 
 void ArmCheck::begin(Phase phase) {
     phase_ = phase;
-    began_ = 0;
+    began_ = ended_ = 0;
     if (phase != Phase::force) return;
     servo_ = Servo(law_);
     picked_up_ = 0;
@@ -98,11 +105,15 @@ void ArmCheck::see_force(const ServoOutput& out) {
     }
 }
 
+// A force that an empty tank holds back for a period has not been stopped.
 void ArmCheck::see_stop(const ServoOutput& out) {
-    const auto passed = static_cast<int>(tick_ - began_);
-    const bool ended = out.force == Vec3{0};
-    if (ended && glm::length(force_) > kLeastPush) figures_.stop[at_] = passed;
-    if (ended || passed >= static_cast<int>(kTrouble)) next();
+    const bool stopped = out.command.force == Vec3{0} && (!out.engaged || out.pass == 0);
+    if (!stopped) ended_ = 0;
+    if (stopped && ended_ == 0) ended_ = tick_;
+    const bool stays = stopped && tick_ - ended_ >= kStays;
+    if (!stays && tick_ - began_ < kTrouble) return;
+    if (stopped && glm::length(force_) > kLeastPush) figures_.stop[at_] = static_cast<int>(ended_ - began_);
+    next();
 }
 
 DeviceCommand ArmCheck::step(std::uint64_t tick, const DeviceState* fresh) {
@@ -119,23 +130,27 @@ DeviceCommand ArmCheck::step(std::uint64_t tick, const DeviceState* fresh) {
     }
     if (tick - began_ + 1 < (phase_ == Phase::rest ? kRest : kQuiet)) return {};
     if (phase_ == Phase::rest) end_rest();
+    if (done()) return {};
     begin(Phase::force);
     return {};
 }
 
 ArmFigures ArmCheck::figures() const {
     ArmFigures figures = figures_;
+    const auto greatest = std::max_element(rise_.begin(), rise_.end());
     for (std::size_t i = 0; i < rise_.size() && figures.ramp == 0; ++i)
-        if (rise_[i] >= kRisen * rise_.back()) figures.ramp = kPeriod * static_cast<double>(i);
+        if (rise_[i] >= kRisen * *greatest) figures.ramp = kPeriod * static_cast<double>(i);
     return figures;
 }
 
-Message ArmCheck::finding() const {
-    if (!done()) return {};
-    if (figures_.moved > kStandsWithin) return "the arm moves: let it hang or stand still, hands off";
-    if (figures_.states_per_period == 0) return "the arm sends no position";
-    if (figures_.greatest_force < kLeastPush) return "the arm was given no force: its position does not hold still";
-    for (const int periods : figures_.stop) {
+Message finding_of(const ArmFigures& figures) {
+    if (figures.states_per_period == 0) return "the arm sends no position";
+    if (figures.greatest_force > kMostPush) return "the arm was given more force than the check allows";
+    if (figures.moved > kStandsWithin) return "the arm moves: let it hang or stand still, hands off";
+    if (figures.greatest_force < kLeastPush) return "the arm was given no force: its position does not hold still";
+    if (figures.ramp < kLeastRamp || figures.largest_step > kPush)
+        return "force came at once instead of over half a second";
+    for (const int periods : figures.stop) {
         if (periods < 0) return "a stop could not be measured: positions come too late, or do not hold still";
         if (periods >= kSlowest) return "a force took 20 ms or longer to end";
     }

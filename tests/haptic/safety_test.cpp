@@ -87,9 +87,79 @@ TEST(ArmCheck, AnArmInAHandOrWithoutAWordIsNotCalledSafe) {
     EXPECT_TRUE(silent.done());
     EXPECT_FALSE(silent.finding().empty());
     EXPECT_EQ(silent.figures().greatest_force, 0);
+    // It speaks when its rest has passed: nobody knows where it stood.
+    const ArmCheck late = checked(nobodys(device_preset("touch")), 0, 1200);
+    EXPECT_EQ(late.finding().text(), silent.finding().text());
+    EXPECT_EQ(late.figures().greatest_force, 0);
+    EXPECT_EQ(late.figures().moved, 0);
     // Half a second without a state while force is on: it is picked up anew.
     const ArmCheck again = checked(nobodys(device_preset("touch")), 1500, 2000);
     EXPECT_TRUE(again.finding().empty()) << again.finding().text();
+}
+
+// Carried off by 10 m/s² as soon as force comes: the coupling would give that hand 0.2 N.
+TEST(ArmCheck, GivesNoMoreThanTwentyMillinewtonsWhateverTheArmDoes) {
+    for (const DeviceLimits& limits : device_presets()) {
+        ArmCheck check(limits);
+        double x = 0, v = 0, greatest = 0;
+        for (std::uint64_t tick = 1; tick < 20'000 && !check.done(); ++tick) {
+            const DeviceState state{.position = {x, 0, 0}};
+            const double force = glm::length(check.step(tick, &state).force);
+            greatest = std::max(greatest, force);
+            if (greatest > 0.019) x += kPeriod * (v += kPeriod * 10);
+        }
+        EXPECT_TRUE(check.done());
+        EXPECT_GT(greatest, 0.019) << limits.name;
+        EXPECT_LE(greatest, 0.02 + 1e-12) << limits.name;  // N, rounding of a length
+    }
+}
+
+// What the servo sends is judged, not what it should send.
+TEST(ArmCheck, ForceAtOnceOrTooMuchOrWithoutAnEndIsNotCalledSafe) {
+    ArmFigures good{.states_per_period = 1, .greatest_force = 0.02, .ramp = 0.475, .stop = {17, 0, 0, 10, 0}};
+    EXPECT_TRUE(finding_of(good).empty());
+    const auto expect_found = [&](auto change) {
+        ArmFigures bad = good;
+        change(bad);
+        EXPECT_FALSE(finding_of(bad).empty());
+    };
+    expect_found([](ArmFigures& f) { f.greatest_force = 0.021; });
+    expect_found([](ArmFigures& f) { f.greatest_force = 0; });
+    expect_found([](ArmFigures& f) { f.ramp = 0.001; });
+    expect_found([](ArmFigures& f) { f.largest_step = 0.021; });
+    expect_found([](ArmFigures& f) { f.moved = 0.021; });
+    expect_found([](ArmFigures& f) { f.states_per_period = 0; });
+    expect_found([](ArmFigures& f) { f.stop[2] = 20; });
+    expect_found([](ArmFigures& f) { f.stop[4] = -1; });
+}
+
+// An arm whose places flicker by one count in each period, as all arms' do.
+TEST(ArmCheck, AFlickerOfOneCountIsSafe) {
+    for (const DeviceLimits& limits : device_presets()) {
+        ArmCheck check(limits);
+        for (std::uint64_t tick = 1; tick < 20'000 && !check.done(); ++tick) {
+            const DeviceState state{.position = {limits.count * static_cast<double>(tick * tick / 3 % 2), 0, 0}};
+            check.step(tick, &state);
+        }
+        EXPECT_TRUE(check.finding().empty()) << limits.name << " " << check.finding().text();
+        EXPECT_LE(check.figures().greatest_force, 0.02 + 1e-12) << limits.name;
+    }
+}
+
+// Pulled along amid the fourth fault, the pause, the arm empties the tank: no force for a period, but no stop.
+TEST(ArmCheck, AStopIsOneOnlyIfItLasts) {
+    ArmCheck check(device_preset("touch"));
+    double z = 0;
+    int falls = 0;
+    bool full = false;
+    for (std::uint64_t tick = 1; tick < 20'000 && !check.done(); ++tick) {
+        const DeviceState state{.position = {0, 0, z}};
+        const double force = glm::length(check.step(tick, &state).force);
+        if (full && force < 0.0199) ++falls;
+        full = force >= 0.0199;
+        if (falls == 4 && z < 0.01) z += 5e-4;
+    }
+    EXPECT_EQ(check.figures().stop, (std::array{17, 0, 0, 10, 0}));
 }
 
 DeviceState at(double x) {

@@ -133,6 +133,17 @@ nlohmann::json to_json(const Trials& trials) {
               {"worst", 1e6 * quantile(solves, 1)}}}};
 }
 
+void add_loop(nlohmann::json& out, const haptic::LoopStatus& loop) {
+    out["late_percent"] = percent(loop.cycle.late, loop.cycle.count);
+    out["worst_cycle_ms"] = 1e3 * loop.cycle.worst;
+    out["p999_cycle_ms"] = 1e3 * loop.cycle.quantile(0.999);
+    out["allocations"] = loop.allocations;
+    out["late_solves_percent"] = percent(loop.late_solves, loop.solves);
+    out["lost_poses"] = loop.lost_poses;
+    out["realtime"] = loop.realtime;
+    out["memory_locked"] = loop.locked;
+}
+
 void print(const nlohmann::json& out, bool as_json) {
     if (as_json)
         print_json(out);
@@ -163,26 +174,20 @@ int test_device(const DeviceWork& a) {
             out = to_json(check);
             finding = check.finding();
         }
-        loop = run_loop(a, places, fault);
+        // An arm that is not safe gets no force of hair.
+        if (finding.empty()) loop = run_loop(a, places, fault);
     } catch (const Cancelled&) {  // what there is, is printed
         console.clear();
         if (!out.empty()) print(out, a.common.json);
         throw;
     }
     console.clear();
-    out["late_percent"] = percent(loop.cycle.late, loop.cycle.count);
-    out["worst_cycle_ms"] = 1e3 * loop.cycle.worst;
-    out["p999_cycle_ms"] = 1e3 * loop.cycle.quantile(0.999);
-    out["allocations"] = loop.allocations;
-    out["late_solves_percent"] = percent(loop.late_solves, loop.solves);
-    out["lost_poses"] = loop.lost_poses;
-    out["realtime"] = loop.realtime;
-    out["memory_locked"] = loop.locked;
-    if (!loop.realtime)
+    if (finding.empty()) add_loop(out, loop);
+    if (finding.empty() && !loop.realtime)
         console.note("the system allows no real-time priority: cycles will be late (ulimit -r, or CAP_SYS_NICE)");
     print(out, a.common.json);
-    if (fault != haptic::Fault::none) throw Error(haptic::describe(fault));
     if (!finding.empty()) throw Error(finding);
+    if (fault != haptic::Fault::none) throw Error(haptic::describe(fault));
     return 0;
 }
 

@@ -55,6 +55,7 @@ struct ServerOptions {
     double rate = 1000;                     ///< states per second
     ServerFault fault = ServerFault::none;  ///< begins `fault_after` seconds after a client has come
     double fault_after = 1;                 ///< s
+    std::atomic<bool>* faulty = nullptr;    ///< true from when the fault has begun
 };
 
 /// Serves a simulated arm on 127.0.0.1, whose time begins with the first client, one client at a time, until `go_on`

@@ -80,8 +80,10 @@ class Client {
         timer_.cancel();
     }
     bool faulty(ServerFault fault) const {
-        return options_.fault == fault &&
-               std::chrono::duration<double>(Clock::now() - begin_).count() > options_.fault_after;
+        const bool is = options_.fault == fault &&
+                        std::chrono::duration<double>(Clock::now() - begin_).count() > options_.fault_after;
+        if (is && options_.faulty) *options_.faulty = true;
+        return is;
     }
 
     void read() {
