@@ -91,7 +91,6 @@ void ArmCheck::see_force(const ServoOutput& out) {
     const double step =
         glm::distance(out.force, force_) - law_.limits.max_stiffness * glm::distance(position_, before_);
     figures_.largest_step = std::max(figures_.largest_step, step);
-    figures_.greatest_force = std::max(figures_.greatest_force, size);
     force_ = out.force;
     if (!out.engaged) picked_up_ = 0;  // states fail to come
     if (out.engaged && picked_up_ == 0) picked_up_ = tick_;
@@ -125,6 +124,7 @@ DeviceCommand ArmCheck::step(std::uint64_t tick, const DeviceState* fresh) {
     if (done()) return {};
     if (phase_ == Phase::force || phase_ == Phase::fault) {
         const ServoOutput out = press(fresh);
+        figures_.greatest_force = std::max(figures_.greatest_force, glm::length(out.command.force));
         phase_ == Phase::force ? see_force(out) : see_stop(out);
         return out.command;
     }
@@ -148,12 +148,12 @@ Message finding_of(const ArmFigures& figures) {
     if (figures.greatest_force > kMostPush) return "the arm was given more force than the check allows";
     if (figures.moved > kStandsWithin) return "the arm moves: let it hang or stand still, hands off";
     if (figures.greatest_force < kLeastPush) return "the arm was given no force: its position does not hold still";
-    if (figures.ramp < kLeastRamp || figures.largest_step > kPush)
-        return "force came at once instead of over half a second";
     for (const int periods : figures.stop) {
         if (periods < 0) return "a stop could not be measured: positions come too late, or do not hold still";
         if (periods >= kSlowest) return "a force took 20 ms or longer to end";
     }
+    if (figures.ramp < kLeastRamp || figures.largest_step > kPush)
+        return "force came at once instead of over half a second";
     return {};
 }
 
