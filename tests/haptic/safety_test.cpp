@@ -146,22 +146,6 @@ TEST(ArmCheck, AFlickerOfOneCountIsSafe) {
     }
 }
 
-// Pulled along amid the fourth fault, the pause, the arm empties the tank: no force for a period, but no stop.
-TEST(ArmCheck, AStopIsOneOnlyIfItLasts) {
-    ArmCheck check(device_preset("touch"));
-    double z = 0;
-    int falls = 0;
-    bool full = false;
-    for (std::uint64_t tick = 1; tick < 20'000 && !check.done(); ++tick) {
-        const DeviceState state{.position = {0, 0, z}};
-        const double force = glm::length(check.step(tick, &state).force);
-        if (full && force < 0.0199) ++falls;
-        full = force >= 0.0199;
-        if (falls == 4 && z < 0.01) z += 5e-4;
-    }
-    EXPECT_EQ(check.figures().stop, (std::array{17, 0, 0, 10, 0}));
-}
-
 DeviceState at(double x) {
     return {.position = {x, 0, 0}};
 }
