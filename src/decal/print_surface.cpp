@@ -11,15 +11,17 @@
 #include "atlas/flatten/flatten.h"
 #include "atlas/seams/half_edges.h"
 #include "core/geometry/segment.h"
+#include "core/system/interrupt.h"
 
 namespace tuft::decal {
 namespace {
 
-constexpr double kInside = -1e-9;        // barycentric weights of points on an edge, rounding
-constexpr double kSlack = 1e-9;          // metres, more than rounding changes a distance
-constexpr double kPainted = 0.5;         // coverage: the soft edge of paint beside a rim does not run on
-constexpr double kBesideRim = 1e-6;      // metres
-constexpr std::size_t kMostListed = 32;  // cells that list a triangle, on average
+constexpr double kInside = -1e-9;             // barycentric weights of points on an edge, rounding
+constexpr double kSlack = 1e-9;               // metres, more than rounding changes a distance
+constexpr double kPainted = 0.5;              // coverage: the soft edge of paint beside a rim does not run on
+constexpr double kBesideRim = 1e-6;           // metres
+constexpr std::uint32_t kFacesAtOnce = 1000;  // between two looks for an interrupt
+constexpr std::size_t kMostListed = 32;       // cells that list a triangle, on average
 
 /// Walks over the seams and lays down triangle after triangle.
 class Strip {
@@ -152,6 +154,65 @@ class Strip {
     double widest_ = 0;        // of those spans, metres
 };
 
+/// Finds the rims whose box comes within a box: a grid with about as many cells as there are rims.
+class RimGrid {
+  public:
+    explicit RimGrid(std::span<const GapRim> rims) : rims_(rims) {
+        Vec2 hi = lo_ = rims[0].a;
+        double extent = 0;
+        for (const GapRim& rim : rims) {
+            const Vec2 from = glm::min(rim.a, rim.b), to = glm::max(rim.a, rim.b);
+            lo_ = glm::min(lo_, from), hi = glm::max(hi, to);
+            extent += std::max(to.x - from.x, to.y - from.y);
+        }
+        const auto n = static_cast<double>(rims.size());
+        const Vec2 size = hi - lo_;
+        cell_ = std::max({std::sqrt(size.x * size.y / n), std::max(size.x, size.y) / n, extent / n, 1e-9});
+        width_ = static_cast<std::size_t>(size.x / cell_) + 1;
+        cells_.resize(width_ * (static_cast<std::size_t>(size.y / cell_) + 1));
+        for (std::uint32_t r = 0; r < rims.size(); ++r)
+            each_cell(glm::min(rims[r].a, rims[r].b), glm::max(rims[r].a, rims[r].b),
+                      [&](std::vector<std::uint32_t>& cell) { cell.push_back(r); });
+    }
+
+    /// In ascending order.
+    const std::vector<std::uint32_t>& within(const Vec2& lo, const Vec2& hi) {
+        found_.clear();
+        each_cell(lo, hi, [&](const std::vector<std::uint32_t>& cell) {
+            for (const std::uint32_t r : cell) {
+                const GapRim& rim = rims_[r];
+                if (std::min(rim.a.x, rim.b.x) <= hi.x && std::min(rim.a.y, rim.b.y) <= hi.y &&
+                    std::max(rim.a.x, rim.b.x) >= lo.x && std::max(rim.a.y, rim.b.y) >= lo.y)
+                    found_.push_back(r);
+            }
+        });
+        std::sort(found_.begin(), found_.end());
+        found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+        return found_;
+    }
+
+  private:
+    void each_cell(const Vec2& lo, const Vec2& hi, auto&& use) {
+        const std::size_t height = cells_.size() / width_;
+        const auto of = [&](double at, std::size_t n) {
+            return static_cast<std::size_t>(std::clamp(at / cell_, 0.0, static_cast<double>(n - 1)));
+        };
+        const Vec2 from = lo - lo_, to = hi - lo_;
+        if (to.x < 0 || to.y < 0 || from.x > static_cast<double>(width_) * cell_ ||
+            from.y > static_cast<double>(height) * cell_)
+            return;
+        for (std::size_t y = of(from.y, height); y <= of(to.y, height); ++y)
+            for (std::size_t x = of(from.x, width_); x <= of(to.x, width_); ++x) use(cells_[y * width_ + x]);
+    }
+
+    std::span<const GapRim> rims_;
+    Vec2 lo_{0};
+    double cell_ = 1;
+    std::size_t width_ = 1;
+    std::vector<std::vector<std::uint32_t>> cells_;
+    std::vector<std::uint32_t> found_;
+};
+
 /// Gives the faces of gaps their rims.
 void add_rims(PrintSurface& surface, const std::vector<std::uint8_t>& in_gap) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> open_side;  // of an edge, as a gap's face has it
@@ -167,20 +228,18 @@ void add_rims(PrintSurface& surface, const std::vector<std::uint8_t>& in_gap) {
         }
     if (all.empty()) return;
     surface.rims_of.resize(surface.faces.size());
+    RimGrid grid(all);
     for (std::uint32_t t = 0; t < surface.faces.size(); ++t) {
+        if (t % kFacesAtOnce == 0) check_interrupt();
         const Vec2 a = surface.flat[surface.faces[t][0]], b = surface.flat[surface.faces[t][1]],
                    c = surface.flat[surface.faces[t][2]];
         const double around = in_gap[t] ? surface.run_on : kLip;
         const Vec2 lo = glm::min(a, glm::min(b, c)) - around, hi = glm::max(a, glm::max(b, c)) + around;
-        for (std::uint32_t r = 0; r < all.size(); ++r) {
-            GapRim& rim = all[r];
-            if (std::min(rim.a.x, rim.b.x) > hi.x || std::min(rim.a.y, rim.b.y) > hi.y ||
-                std::max(rim.a.x, rim.b.x) < lo.x || std::max(rim.a.y, rim.b.y) < lo.y)
-                continue;
+        for (const std::uint32_t r : grid.within(lo, hi)) {
             if (in_gap[t])
                 surface.rims_of[t].push_back(r);
-            else if (t != rim.faces[0])
-                rim.faces.push_back(t);
+            else if (t != all[r].faces[0])
+                all[r].faces.push_back(t);
         }
     }
 }

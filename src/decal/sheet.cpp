@@ -43,6 +43,11 @@ double printed_bleed(const SheetOptions& options) {
     return std::min(options.bleed, kPrintedBleed);
 }
 
+/// What is drawn beyond a piece's film: its printed bleed, and ticks of laps.
+double drawn_around(const SheetOptions& options) {
+    return std::max(printed_bleed(options), options.overlap > 0 ? kTickTo : 0);
+}
+
 /// How far film i reaches beyond its seam with another panel: the one with the lower number lies below.
 double overlap_of(const CutFilm& cut, std::size_t i, std::uint32_t label, const SheetOptions& options) {
     return cut.index.at(label) > i ? options.overlap : 0;
@@ -64,7 +69,7 @@ double upright_angle(const Vec2& up) {
 /// Whether a panel with its bleed and its label fits the page in an orientation that it may take.
 bool fits_page(const atlas::ChartMesh& chart, const std::vector<Vec2>& flat, const SheetOptions& options) {
     const Vec2 area = free_area(options.page);
-    const double around = 2 * (options.bleed + printed_bleed(options)) + kLabelHeight;
+    const double around = 2 * (options.bleed + drawn_around(options)) + kLabelHeight;
     Ring border;
     for (const std::uint32_t v : chart.loop) border.push_back(flat[v]);
     if (options.upright) {
@@ -97,7 +102,8 @@ CutFilm cut_film(const mesh::TriangleMesh& model, const PrintSource& source, con
 std::vector<Piece> find_pieces(const mesh::TriangleMesh& model, const CutFilm& cut, const PrintSource& source,
                                const SheetOptions& options, std::vector<PrintSurface>& surfaces) {
     std::vector<Piece> pieces;
-    const std::vector<std::uint8_t> in_gap = find_gaps(model, cut.film);
+    std::vector<std::uint8_t> in_gap;
+    if (printed_bleed(options) > 0) in_gap = find_gaps(model, cut.film);
     for (std::size_t i = 0; i < cut.panels.size(); ++i) {
         report(options.progress, "cut lines", static_cast<double>(i) / static_cast<double>(cut.panels.size()));
         const auto reach = [&](std::uint32_t label) {
@@ -216,9 +222,9 @@ struct Footprint {
     Vec2 label{0};  // lower left corner of the label's box
 };
 
-Footprint footprint_of(const Piece& piece, double angle, double bleed) {
+Footprint footprint_of(const Piece& piece, double angle, double around) {
     const PagePlacement turn{std::cos(angle), std::sin(angle), Vec2(0)};
-    Region region = offset(piece.film, bleed);
+    Region region = offset(piece.film, around);
     for (Ring& ring : region)
         for (Vec2& p : ring) p = turn(p);
     Vec2 top = region[0][0];
@@ -247,7 +253,7 @@ std::vector<Footprint> footprints_of(const Piece& piece, const SheetOptions& opt
     }
     std::vector<Footprint> all;
     all.reserve(angles.size());
-    for (const double angle : angles) all.push_back(footprint_of(piece, angle, printed_bleed(options)));
+    for (const double angle : angles) all.push_back(footprint_of(piece, angle, drawn_around(options)));
     return all;
 }
 
@@ -300,8 +306,13 @@ void add_lap_ticks(const CutFilm& cut, const Piece& piece, const SheetOptions& o
             if (contains(piece.film, p) == inside) continue;
             const Vec2 out = (inside ? 1.0 : -1.0) * (b - a) / length;
             inside = !inside;
+            // A concave border may meet its own film again.
+            double to = 0;
+            while (to < kTickTo && !contains(piece.film, p + (to + kTickFrom) * out)) to += kSeamStep;
+            to = std::min(to, kTickTo);
+            if (to < 2 * kTickFrom) continue;
             page.lines.push_back(
-                {{piece.placement(p + kTickFrom * out), piece.placement(p + kTickTo * out)}, false, Role::label});
+                {{piece.placement(p + kTickFrom * out), piece.placement(p + to * out)}, false, Role::label});
         }
     }
 }

@@ -70,5 +70,44 @@ TEST(Gaps, GroovesAreGapsAndCreasesAreNot) {
     EXPECT_NEAR(part({{0, 0}, {9, 0}, {9, -2}, {12, -2}, {12, 0}, {22, 0}}), 3.0 / 5.0, 1e-12);  // walls and floor
 }
 
+/// A sheet faces another part of the model 5 mm away, but there is no film there for it to be spanned over.
+TEST(Gaps, WhatNoFilmSpansIsNone) {
+    const mesh::TriangleMesh model = drawn({{0, 0}, {10, 0}, {15, 0}, {20, 0}, {20, 5}, {10, 5}, {0, 5}});
+    const auto below = test::coverage_where(model, [](const Vec3& p) { return p.z < 1e-6 && p.x < 12 * kMm; });
+    const std::vector<std::uint8_t> in_gap = find_gaps(model, select_film(model, below, 0, kMm));
+    ASSERT_FALSE(in_gap.empty());
+    EXPECT_EQ(std::accumulate(in_gap.begin(), in_gap.end(), 0), 0);
+}
+
+/// Each face in a gap knows the rims within reach of its box, in their order.
+TEST(Gaps, FacesKnowTheRimsWithinReach) {
+    const mesh::TriangleMesh model =
+        drawn({{0, 0}, {10, 0}, {11, -3}, {12, 0}, {13, 0}, {14, -3}, {15, 0}, {24, 0}, {34, 0}});
+    FilmMesh film = film_of(model);
+    const auto all = [](std::uint32_t, const Weights&) { return 1.0; };
+    const std::vector<Panel> panels = cut_into_panels(film, all, {});
+    const std::vector<std::uint8_t> in_gap = find_gaps(model, film);
+    std::size_t known = 0;
+    for (const Panel& panel : panels) {
+        const PrintSurface surface = extend(
+            film, panel, [](std::uint32_t) { return 0.0; }, in_gap, 2 * kMm);
+        for (std::size_t t = 0; t < surface.rims_of.size(); ++t) {
+            if (!in_gap[panel.chart.triangles[t]]) continue;
+            Ring corners;
+            for (const std::uint32_t v : surface.faces[t]) corners.push_back(surface.flat[v]);
+            const Box2 face = box_of({corners});
+            std::vector<std::uint32_t> within;
+            for (std::uint32_t r = 0; r < surface.rims.size(); ++r) {
+                const Box2 rim = box_of({{surface.rims[r].a, surface.rims[r].b}});
+                const Vec2 apart = glm::max(rim.lo - face.hi, face.lo - rim.hi);
+                if (std::max(apart.x, apart.y) <= 2 * kMm) within.push_back(r);
+            }
+            EXPECT_EQ(surface.rims_of[t], within) << t;
+            known += within.size();
+        }
+    }
+    EXPECT_GT(known, 0u);
+}
+
 }  // namespace
 }  // namespace tuft::decal
