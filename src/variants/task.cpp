@@ -142,7 +142,10 @@ Task task_of_json(const std::string& text, const std::string& source) {
 }
 
 std::string hash_of(const Task& task) {
-    return hash_of_text(json_of(task));
+    if (task.painting.dip != "persistent") return hash_of_text(json_of(task));
+    Task earlier = task;
+    earlier.painting.dip = "carry";  // the word of earlier versions, whose results are kept
+    return hash_of_text(json_of(earlier));
 }
 
 fs::path find_input(const fs::path& folder, const std::string& name) {

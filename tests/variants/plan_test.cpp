@@ -102,6 +102,10 @@ TEST_F(PlanFolder, BrushesStayInHandByThePresentWordAndByTheEarlierOne) {
                             before = tasks_of(parse(text + "'carry'\n"));
     EXPECT_EQ(now[0].painting.dip, "persistent");
     EXPECT_EQ(before, now);
+    // The tasks of earlier versions say "carry", under a hash of that.
+    Task earlier = now[0];
+    earlier.painting.dip = "carry";
+    EXPECT_EQ(hash_of(now[0]), hash_of(earlier));
 }
 
 TEST_F(PlanFolder, HashChangesWithEveryFileAndNothingElse) {
