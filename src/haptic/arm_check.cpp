@@ -7,7 +7,7 @@
 namespace tuft::haptic {
 namespace {
 
-constexpr std::uint64_t kRest = 1000, kPress = 700, kTrouble = 100, kQuiet = 100;  // periods
+constexpr std::uint64_t kRest = 1000, kPress = 700, kFault = 100, kQuiet = 100;  // periods
 constexpr std::uint64_t kPatience = 2000;  // periods in which an arm is to be picked up
 constexpr double kPush = 0.02;             // N
 constexpr double kLeastPush = 0.005;       // N
@@ -110,7 +110,7 @@ void ArmCheck::see_stop(const ServoOutput& out) {
     if (!stopped) ended_ = 0;
     if (stopped && ended_ == 0) ended_ = tick_;
     const bool stays = stopped && tick_ - ended_ >= kStays;
-    if (!stays && tick_ - began_ < kTrouble) return;
+    if (!stays && tick_ - began_ < kFault) return;
     if (stopped && glm::length(force_) > kLeastPush) figures_.stop[at_] = static_cast<int>(ended_ - began_);
     next();
 }

@@ -8,7 +8,7 @@
 namespace tuft::haptic {
 namespace {
 
-TEST(Safety, NoForceTwentyMillisecondsAfterAnyTrouble) {
+TEST(Safety, NoForceTwentyMillisecondsAfterAnyFault) {
     const TrialModel f = load_trial_model("sheet");
     const brush::Tuft tuft = tuft_of("wolf-medium");
     const auto path = hand_path(HandMotion::rest, f.place, tuft.preset);
