@@ -18,6 +18,12 @@ T hermite(const T& p0, const T& p1, const T& m0, const T& m1, double h, double t
     return p0 + (p1 - p0) * (3 * t2 - 2 * t3) + h * (m0 * (t3 - 2 * t2 + t) + m1 * (t3 - t2));
 }
 
+/// Returns the same by slopes over the whole piece, h m0 and h m1, in a form that is exact at both ends.
+inline double hermite_between(double p0, double p1, double m0, double m1, double t) {
+    const double r = 1 - t;
+    return r * r * (1 + 2 * t) * p0 + t * t * (1 + 2 * r) * p1 + r * t * (r * m0 - t * m1);
+}
+
 /// Returns the slope of `hermite`, per unit of h: 6 (p1 − p0)(t − t²) / h + m0 (3t² − 4t + 1) + m1 (3t² − 2t).
 template <class T>
 T hermite_slope(const T& p0, const T& p1, const T& m0, const T& m1, double h, double t) {

@@ -27,6 +27,8 @@ TEST(Cubic, IsTheCubicThatHasItsEndsAndSlopes) {
     for (int i = 0; i <= 20; ++i) {
         const double t = i / 20.0, x = x0 + t * h;
         EXPECT_NEAR(hermite(cubic(x0), cubic(x1), cubic_slope(x0), cubic_slope(x1), h, t), cubic(x), kRounding);
+        EXPECT_NEAR(hermite_between(cubic(x0), cubic(x1), h * cubic_slope(x0), h * cubic_slope(x1), t), cubic(x),
+                    kRounding);
         EXPECT_NEAR(hermite_slope(cubic(x0), cubic(x1), cubic_slope(x0), cubic_slope(x1), h, t), cubic_slope(x),
                     kRounding);
     }

@@ -416,7 +416,8 @@ Followed follow(mesh::TriangleMesh former, const mesh::TriangleMesh& revised, co
     const NamedEntries named = follow_names(std::move(entries), former, revised);
     Followed out{
         .mask = named.entries[0].get<MaskEdit>().mask.groups, .locked = {}, .former = {}, .notes = named.notes.size()};
-    for (const Part& part : named.entries[1].get<PartEdit>().parts) out.locked.push_back(part.name);
+    for (const Part& part : named.entries[1].get<PartEdit>().parts)
+        if (part.locked) out.locked.push_back(part.name);
     for (const std::uint32_t group : former.triangle_groups) out.former.push_back(former.group_names[group]);
     return out;
 }
@@ -467,7 +468,8 @@ TEST(FollowNames, OfObjectsThatLostTheirNamesAreTheirMaterial) {
     const Objects unnamed{{"", "Paint"}, {"", "Paint"}, {"Tyre", "Rubber"}};
     const Followed both = follow(file_of(named), file_of(unnamed), {"Door"});
     EXPECT_EQ(both.mask, (Names{"Paint"}));
-    EXPECT_EQ(both.locked, (Names{"Paint"}));
+    EXPECT_EQ(both.locked, Names{}) << "the hood was not";
+    EXPECT_EQ(follow(file_of(named), file_of(unnamed), {"Door", "Hood"}).locked, (Names{"Paint"}));
     EXPECT_EQ(both.former, (Names{"Paint", "Paint", "Tyre"}));
     EXPECT_EQ(both.notes, 1u) << "the mask holds more than the door";
     EXPECT_EQ(follow(file_of(named), file_of(unnamed), {"Tyre"}).notes, 0u);
@@ -487,7 +489,8 @@ TEST(FollowNames, OfTwoPartsThatAreOneAreSaid) {
     ASSERT_EQ(former.group_names, (Names{"Hood", "Tyre", "Hood 2"}));
     const Followed one = follow(former, revised, {"Hood 2"});
     EXPECT_EQ(one.mask, (Names{"Hood"}));
-    EXPECT_EQ(one.locked, (Names{"Hood"}));
+    EXPECT_EQ(one.locked, Names{}) << "strokes on the first page keep their ink";
+    EXPECT_EQ(follow(former, revised, {"Hood", "Hood 2"}).locked, (Names{"Hood"}));
     EXPECT_EQ(one.former, (Names{"Hood", "Tyre", "Hood"}));
     EXPECT_EQ(one.notes, 1u);
     EXPECT_EQ(follow(former, revised, {"Tyre"}).notes, 0u);
@@ -500,6 +503,26 @@ TEST(FollowNames, OfMaterialsAreThoseOfTheirNodes) {
     EXPECT_EQ(glass.mask, (Names{"Windscreen"}));
     EXPECT_EQ(glass.locked, (Names{"Windscreen"}));
     EXPECT_EQ(glass.former, (Names{"Body", "Windscreen"}));
+    EXPECT_EQ(glass.notes, 0u);
+}
+
+// A material that is called as another node is, in a project that knows materials only.
+TEST(FollowNames, OfMaterialsAreNotThoseOfOtherNodes) {
+    const Objects car{{"Glass", "Windscreen"}, {"Lamp", "Glass"}};
+    mesh::TriangleMesh former = old_file_of(car);
+    former.scene = nullptr;
+    former.triangle_parts.clear();
+    EXPECT_EQ(follow(former, file_of(car), {"Glass"}).mask, (Names{"Lamp"}));
+}
+
+// A revised file without parts, such as an STL with solids, still has the former name.
+TEST(FollowNames, ThatAFileWithoutPartsHasAreKept) {
+    mesh::TriangleMesh revised = file_of({{"Glass", "Glass"}, {"Shell", "Shell"}});
+    revised.scene = nullptr;
+    revised.triangle_parts.clear();
+    const Followed glass = follow(old_file_of({{"Windscreen", "Glass"}, {"Body", "Paint"}}), revised, {"Glass"});
+    EXPECT_EQ(glass.mask, (Names{"Glass"}));
+    EXPECT_EQ(glass.locked, (Names{"Glass"}));
     EXPECT_EQ(glass.notes, 0u);
 }
 

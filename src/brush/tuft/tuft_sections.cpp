@@ -106,7 +106,7 @@ Recycled<double> indentation_of(const SectionInput& in, const Recycled<Vec3>& t)
         for (int k = 0; k < kPoints; ++k) {
             const double f = (k + 0.5) / kPoints;
             const double r = std::lerp(in.obstacles[j].radius, in.obstacles[j + 1].radius, f);
-            const double depth = r - hermite(z[j], z[j + 1], c[j], c[j + 1], l, f);
+            const double depth = r - hermite_between(z[j], z[j + 1], l * c[j], l * c[j + 1], f);
             if (r <= 0 || depth <= 0) continue;
             const double lean = std::lerp(c[j], c[j + 1], f);
             const double indentation = std::min(depth / r, 1.0) * (1 - lean * lean) * l / kPoints;

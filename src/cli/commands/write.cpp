@@ -69,7 +69,7 @@ TextToWrite read_text(const Write& a) {
                         text.kept_filled));
     if (a.fit && text.style.kind != writer::HandKind::brush)
         out.notes.push_back("--fit changes nothing: the style is that of a pen, not of a pointed brush");
-    else if (a.fit && !has_outlines(text))
+    else if (a.fit && text.kept_filled == 0 && !has_outlines(text))
         out.notes.push_back("--fit changes nothing: the source has centre lines of these characters, no outlines");
     if (text.blank()) throw UsageError("--text: there is nothing to write in it");
     text.layout.direction = *writer::direction_named(a.direction);

@@ -38,6 +38,10 @@ bool has_parts(const mesh::TriangleMesh& mesh) {
     return true;
 }
 
+bool has_nodes(const mesh::TriangleMesh& mesh) {
+    return mesh.scene && std::ranges::any_of(mesh.scene->parts, [](const auto& part) { return part.primitive >= 0; });
+}
+
 /// Without a scene the groups are taken for materials.
 std::vector<GroupPart> group_parts_of(const mesh::TriangleMesh& mesh) {
     std::vector<GroupPart> out;
@@ -66,13 +70,15 @@ class PartMatch {
           is_(group_parts_of(revised)),
           found_(was_.size()),
           taken_(revised.group_names.size(), false) {
+        const auto object = [](const GroupPart& part) { return part.object; };
+        const auto material = [](const GroupPart& part) { return part.material; };
         match_equal();
-        match_rest([](const GroupPart& part) { return part.object; },
-                   [](const GroupPart& part) { return part.object; });
+        match_rest(object, object);
+        // Groups of a file without a scene are materials, and a material may be called as another node is.
+        if (!known_ && has_nodes(revised)) match_rest(material, material);
         match_rest([&](const GroupPart& part) { return former.group_names[part.group]; },
                    [&](const GroupPart& part) { return revised.group_names[part.group]; });
-        match_rest([](const GroupPart& part) { return part.material; },
-                   [](const GroupPart& part) { return part.material; });
+        match_rest(material, material);
     }
 
     const std::vector<GroupPart>& former() const { return was_; }
@@ -120,10 +126,16 @@ class PartMatch {
 
     /// Parts of one name that are left.
     struct Left {
-        std::vector<std::uint32_t> groups;  ///< of each part
+        std::vector<std::uint32_t> groups;  ///< of its parts, each once
+        std::set<std::uint32_t> known;
+        std::size_t n_parts = 0;
         bool has_objects = false;
 
-        bool is_one() const { return std::ranges::adjacent_find(groups, std::not_equal_to{}) == groups.end(); }
+        void add(std::uint32_t group) {
+            ++n_parts;
+            if (known.insert(group).second) groups.push_back(group);
+        }
+        bool is_one() const { return groups.size() == 1; }
     };
 
     /// What is left of both by one name. Of files with parts, only where one group is left on either side (a deleted
@@ -132,18 +144,18 @@ class PartMatch {
     void match_rest(Was name_before, Is name_now) {
         std::map<std::string, Left> before, now;
         for (std::size_t i = 0; i < was_.size(); ++i)
-            if (found_[i].empty()) before[name_before(was_[i])].groups.push_back(was_[i].group);
+            if (found_[i].empty()) before[name_before(was_[i])].add(was_[i].group);
         for (const GroupPart& part : is_) {
             if (taken_[part.group]) continue;
             Left& left = now[name_now(part)];
-            left.groups.push_back(part.group);
+            left.add(part.group);
             left.has_objects = left.has_objects || !part.object.empty();
         }
         std::set<std::string> same;
         for (const auto& [name, left] : before) {
             const auto found = now.find(name);
             if (name.empty() || found == now.end()) continue;
-            const bool lost_names = !found->second.has_objects && found->second.groups.size() == left.groups.size();
+            const bool lost_names = !found->second.has_objects && found->second.n_parts == left.n_parts;
             if (!known_ || (found->second.is_one() && (left.is_one() || lost_names))) same.insert(name);
         }
         for (std::size_t i = 0; i < was_.size(); ++i)
@@ -219,18 +231,42 @@ NewNames match_names(mesh::TriangleMesh& former, const mesh::TriangleMesh& revis
     return names;
 }
 
-/// For a revised file without a scene.
+/// Groups of the former model by the names of the pairs of its groups and `parts`, in their order.
+void rename_groups(mesh::TriangleMesh& former, const std::vector<std::uint32_t>& parts,
+                   const std::map<IndexPair, std::string>& name_of) {
+    std::map<std::string, std::uint32_t> group_of;
+    std::vector<std::string> names;
+    std::vector<mesh::Material> materials;
+    for (const auto& [pair, name] : name_of) {
+        if (!group_of.try_emplace(name, static_cast<std::uint32_t>(names.size())).second) continue;
+        names.push_back(name);
+        if (former.materials.size() == former.group_names.size()) materials.push_back(former.materials[pair.first]);
+    }
+    for (std::size_t t = 0; t < former.n_triangles(); ++t) {
+        std::uint32_t& group = former.triangle_groups[t];
+        group = group_of.at(name_of.at({group, parts[t]}));
+    }
+    former.group_names = std::move(names);
+    former.materials = std::move(materials);
+}
+
+/// For a revised file without a scene: a former group that is not there any more has the names of its parts.
 NewNames names_of_file(mesh::TriangleMesh& former, const std::set<std::string>& today) {
     const bool all_there =
         std::ranges::all_of(former.group_names, [&](const std::string& name) { return today.contains(name); });
     if (all_there || former.triangle_groups.empty()) return {};
-    const std::vector<std::uint32_t> groups = former.triangle_groups;
-    const std::vector<std::string> were = former.group_names;
-    former = mesh::with_part_groups(std::move(former));
+    const mesh::TriangleMesh parts = mesh::with_part_groups(former);
+    const auto pair_of = [&](std::size_t t) { return IndexPair(former.triangle_groups[t], parts.triangle_groups[t]); };
+    const std::set<std::string> were(former.group_names.begin(), former.group_names.end());
     NewNames names;
-    for (const auto& [was, is] :
-         pairs_of(former, [&](std::size_t t) { return IndexPair(groups[t], former.triangle_groups[t]); }))
-        names[were[was]].insert(former.group_names[is]);
+    std::map<IndexPair, std::string> name_of;
+    for (const IndexPair& pair : pairs_of(former, pair_of)) {
+        const std::string &was = former.group_names[pair.first], &own = parts.group_names[pair.second];
+        const std::string& name = today.contains(was) || were.contains(own) ? was : own;
+        names[was].insert(name);
+        name_of.emplace(pair, name);
+    }
+    if (changes(names)) rename_groups(former, parts.triangle_groups, name_of);
     return names;
 }
 
@@ -260,28 +296,51 @@ void note_joined(const NewNames& names, const std::set<std::string>& named, std:
             list += (i > 0 ? ", '" : "'") + were[i] + "'";
         if (were.size() > kMostNames) list += " …";
         notes.push_back(
-            Message("the parts {} are one part now, '{}': a mask of one of them holds all of it, and its "
-                    "state is the last that one of them got",
+            Message("the parts {} are one part now, '{}': a mask of one of them holds all of it, and it "
+                    "is hidden or locked where all of them were",
                     list, name));
     }
 }
 
-void rename(PartEdit& edit, const NewNames& names) {
-    std::map<std::string, Part> parts;  // the last word on a part counts
-    for (const Part& part : edit.parts) {
-        const auto known = names.find(part.name);
-        if (known == names.end()) {
-            parts[part.name] = part;
-            continue;
-        }
-        for (const std::string& name : known->second) {
-            parts[name] = part;
-            parts[name].name = name;
-        }
+/// States of parts under the names of today. A part that was several is hidden or locked where all of them were, so
+/// that no ink on another of them is lost.
+class RenamedStates {
+  public:
+    explicit RenamedStates(const NewNames& names) : names_(names) {
+        for (const auto& [was, now] : names)
+            for (const std::string& name : now) former_[name].push_back(was);
     }
-    edit.parts.clear();
-    for (auto& [name, part] : parts) edit.parts.push_back(std::move(part));
-}
+
+    void rename(PartEdit& edit) {
+        std::map<std::string, Part> parts;  // the last word on a part counts
+        for (const Part& part : edit.parts) {
+            const auto known = names_.find(part.name);
+            if (known == names_.end()) {
+                parts[part.name] = part;
+                continue;
+            }
+            states_[part.name] = part;
+            for (const std::string& name : known->second) parts[name] = joined(name, part);
+        }
+        edit.parts.clear();
+        for (auto& [name, part] : parts) edit.parts.push_back(std::move(part));
+    }
+
+  private:
+    Part joined(const std::string& name, Part part) const {
+        part.name = name;
+        for (const std::string& was : former_.at(name)) {
+            const auto state = states_.find(was);
+            part.hidden = part.hidden && state != states_.end() && state->second.hidden;
+            part.locked = part.locked && state != states_.end() && state->second.locked;
+        }
+        return part;
+    }
+
+    const NewNames& names_;
+    std::map<std::string, std::vector<std::string>> former_;  ///< by the name of today
+    std::map<std::string, Part> states_;                      ///< by former name
+};
 
 /// Returns whether the mask has a group of today.
 bool rename(std::vector<std::string>& groups, const NewNames& names, const std::set<std::string>& today) {
@@ -309,8 +368,9 @@ NamedEntries follow_names(std::vector<JournalEntry> entries, mesh::TriangleMesh&
     const bool renames = changes(names);
     NamedEntries out{.entries = std::move(entries), .notes = {}};
     if (renames) note_joined(names, named_in(out.entries), out.notes);
+    RenamedStates states(names);
     for (JournalEntry& entry : out.entries) {
-        if (PartEdit* edit = entry.as<PartEdit>(); edit && renames) rename(*edit, names);
+        if (PartEdit* edit = entry.as<PartEdit>(); edit && renames) states.rename(*edit);
         MaskEdit* edit = entry.as<MaskEdit>();
         if (!edit || edit->remove || edit->mask.kind != MaskKind::group) continue;
         if (!rename(edit->mask.groups, names, today))

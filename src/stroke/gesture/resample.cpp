@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/cubic.h"
 #include "core/error.h"
 
 namespace tuft::stroke {
@@ -56,7 +55,8 @@ double time_between(const Pose& a, const Pose& b, const Pose& c, const Pose& d, 
     const double before = (b.time - a.time) / h * (k1 / k0), after = (d.time - c.time) / h * (k1 / k2);
     const double from = std::clamp((k1 * before + k0) / (k0 + k1), 0.0, kSteepest);
     const double to = std::clamp((k1 * after + k2) / (k1 + k2), 0.0, kSteepest);
-    return std::clamp(hermite(0.0, 1.0, from, to, 1, s), 0.0, 1.0);
+    const double r = 1 - s;  // the cubic from 0 to 1, kept to the bit: texels of projects depend on it
+    return std::clamp(s * s * (3 - 2 * s) + r * s * (r * from - s * to), 0.0, 1.0);
 }
 
 /// Half the rotation vector that turns a into b.
