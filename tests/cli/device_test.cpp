@@ -125,7 +125,7 @@ TEST_F(Device, SimulateServesAnArmThatListAndRecordFind) {
     EXPECT_GT(nlohmann::json::parse(ran.out)["periods"], 100);
 }
 
-// A service that the program knows nothing of but the wire. A machine that is too slow for an arm is told so.
+// A service that the program knows nothing of but the wire. On a machine that is too slow for an arm it says so.
 TEST_F(Device, TestChecksTheSafetyOfAnArmThatNobodyHolds) {
     const Served server(tuft_program(), "device simulate --preset touch --model sheet --port 0 --hands-off");
     ASSERT_GT(server.port, 0);

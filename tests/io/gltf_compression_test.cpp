@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "core/files/files.h"
 #include "core/random.h"
+#include "gltf_maker.h"
 #include "io/gltf/read_gltf.h"
 
 /// Compressed glTF, by round trips: the test compresses with the libraries' own encoders.
@@ -77,22 +78,7 @@ class Maker {
     std::vector<char> glb() const {
         json full = document;
         full["buffers"][0]["byteLength"] = buffer.size();
-        std::string text = full.dump();
-        text.resize((text.size() + 3) / 4 * 4, ' ');
-        Bytes binary = buffer;
-        binary.resize((binary.size() + 3) / 4 * 4);
-        std::vector<char> out;
-        const auto put = [&](const void* from, std::size_t n) {
-            out.insert(out.end(), static_cast<const char*>(from), static_cast<const char*>(from) + n);
-        };
-        const auto number = [&](std::size_t value) {
-            const auto v = static_cast<std::uint32_t>(value);
-            put(&v, 4);
-        };
-        put("glTF", 4), number(2), number(28 + text.size() + binary.size());
-        number(text.size()), put("JSON", 4), put(text.data(), text.size());
-        number(binary.size()), put("BIN\0", 4), put(binary.data(), binary.size());
-        return out;
+        return test::glb_of(full, {reinterpret_cast<const char*>(buffer.data()), buffer.size()});
     }
 
     Bytes buffer;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +10,26 @@
 #include "core/geometry/types.h"
 
 namespace tuft::test {
+
+/// The bytes of a GLB file with one buffer; both chunks are padded to words.
+inline std::vector<char> glb_of(const nlohmann::json& document, std::span<const char> buffer) {
+    std::string text = document.dump();
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    std::vector<char> binary(buffer.begin(), buffer.end()), bytes;
+    binary.resize((binary.size() + 3) / 4 * 4);
+    const auto put = [&](const void* data, std::size_t size) {
+        const auto* from = static_cast<const char*>(data);
+        bytes.insert(bytes.end(), from, from + size);
+    };
+    const auto number = [&](std::size_t value) {
+        const auto v = static_cast<std::uint32_t>(value);
+        put(&v, 4);
+    };
+    put("glTF", 4), number(2), number(28 + text.size() + binary.size());
+    number(text.size()), put("JSON", 4), put(text.data(), text.size());
+    number(binary.size()), put("BIN\0", 4), put(binary.data(), binary.size());
+    return bytes;
+}
 
 /// A glTF file that is put together in memory.
 class GltfMaker {
@@ -65,20 +86,7 @@ class GltfMaker {
     }
     std::vector<char> glb() {
         document["buffers"] = nlohmann::json::array({{{"byteLength", buffer_.size()}}});
-        std::string text = document.dump();
-        text.resize((text.size() + 3) / 4 * 4, ' ');
-        std::vector<char> bytes;
-        const auto put = [&](const void* data, std::size_t size) {
-            bytes.insert(bytes.end(), static_cast<const char*>(data), static_cast<const char*>(data) + size);
-        };
-        const auto number = [&](std::size_t value) {
-            const auto v = static_cast<std::uint32_t>(value);
-            put(&v, 4);
-        };
-        put("glTF", 4), number(2), number(28 + text.size() + buffer_.size());
-        number(text.size()), put("JSON", 4), put(text.data(), text.size());
-        number(buffer_.size()), put("BIN\0", 4), put(buffer_.data(), buffer_.size());
-        return bytes;
+        return glb_of(document, buffer_);
     }
 
   private:
