@@ -12,6 +12,7 @@ constexpr double T = kPeriod;
 constexpr double kRootMass = 0.02;        // m, kg
 constexpr double kVelocityTime = 4e-3;    // s, of the low-pass of v_x: B count / T would be 0.3 N of noise
 constexpr double kFadeStiffness = 1000;   // N/m
+constexpr double kRootStiffness = 2 * kRootMass / (T * T);  // N/m
 constexpr double kFadeFree = 0.01;        // N that g may jump in a period
 constexpr double kFadeRate = 0.06;        // N by which the offset falls in a period
 constexpr double kRestoreTime = 0.15;     // s
@@ -39,10 +40,12 @@ Vec3 limited(const Vec3& v, double most) {
 }
 
 /// Step 2.
-Vec3 faded(const LawOptions& options, LawState& s, const Vec3& g, double moved) {
+Vec3 faded(const LawOptions& options, LawState& s, const Vec3& g, double moved, const Vec3& root) {
     const Vec3 jump = g - s.fade.force;
     const double size = glm::length(jump), old = glm::length(s.fade.offset);
-    const double allowed = std::min(options.limits.max_stiffness / options.scale, kFadeStiffness) * moved + kFadeFree;
+    const double allowed = std::min(options.limits.max_stiffness / options.scale, kFadeStiffness) * moved +
+                           kRootStiffness * glm::distance(root, s.fade.root) + kFadeFree;
+    s.fade.root = root;
     s.fade.offset = old > kFadeRate ? s.fade.offset * (1 - kFadeRate / old) : Vec3{0};
     if (size > allowed) s.fade.offset -= jump * (1 - allowed / size);
     s.fade.force = g;
@@ -278,7 +281,7 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
 
     const double gain = options.gain * in.trust;
     const Vec3 hair = in.hair ? gain * in.hair->force : Vec3{0};
-    const Vec3 g = faded(options, s, hair, glm::length(moved));
+    const Vec3 g = faded(options, s, hair, glm::length(moved), in.hair ? in.hair->pose.position : s.fade.root);
     const Vec3 pull = K * (in.arm + s.root.restored - s.root.position) + B * s.arm.velocity + g;
     Vec3 velocity = (m * s.root.velocity + T * pull) / (m + T * (K * T + B));
     Vec3 root = s.root.position + T * velocity;

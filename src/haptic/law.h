@@ -87,6 +87,7 @@ struct RootMotion {
 struct Fade {
     Vec3 force{0};   ///< g before the fade, N
     Vec3 offset{0};  ///< o, N
+    Vec3 root{0};    ///< m, where that force was solved
 };
 
 /// The forces of the last periods, N.
