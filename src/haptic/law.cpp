@@ -9,23 +9,27 @@ namespace tuft::haptic {
 namespace {
 
 constexpr double T = kPeriod;
-constexpr double kRootMass = 0.02;        // m, kg
-constexpr double kVelocityTime = 4e-3;    // s, of the low-pass of v_x: B count / T would be 0.3 N of noise
-constexpr double kFadeStiffness = 1000;   // N/m
+constexpr double kRootMass = 0.02;       // m, kg
+constexpr double kVelocityTime = 4e-3;   // s, of the low-pass of v_x: B count / T would be 0.3 N of noise
+constexpr double kFadeStiffness = 1000;  // N/m
 constexpr double kRootStiffness = 2 * kRootMass / (T * T);  // N/m
-constexpr double kFadeFree = 0.01;        // N that g may jump in a period
-constexpr double kFadeRate = 0.06;        // N by which the offset falls in a period
-constexpr double kRestoreTime = 0.15;     // s
+constexpr double kFadeFree = 0.01;                          // N that g may jump in a period
+constexpr double kFadeRate = 0.06;                          // N by which the offset falls in a period
+constexpr double kRestoreTime = 0.15;                       // s
 constexpr double kTankKeeps = 30e-6;      // e_0, J, of what came in and is stored nowhere; in the air, at least
 constexpr double kTankStiffness = 1.25;   // of K: what a full spring gives is never held back
 constexpr double kPlannedFall = 0.9;      // of k_max: a hand that speeds up meanwhile makes the fall steeper
+constexpr std::size_t kPlannedAhead = 2;  // periods: the middle of a fall
 constexpr double kFallFree = 0.08;        // N that a force may fall in a period at rest
-constexpr double kStep = 0.12;            // N that a force may change by in a period at rest
+constexpr double kStep = 0.1;             // N that a force may change by in a period at rest
 constexpr double kReserve = 0.5;          // of the work of a period: counts change by it what is planned
 constexpr double kMostDelayed = 12;       // periods
 constexpr double kLeast = 0.5e-6;         // J to which an empty tank is filled, so that it does not lock at no force
 constexpr double kMostLent = 0.8e-6;      // J of it in a contact
 constexpr double kFlicker = 1.8;          // counts that a position at rest flickers by, on two axes at once
+constexpr double kWithin = 0.5;           // counts from what is measured to x
+constexpr double kStopped = 2;            // counts that an arm would have moved on by
+constexpr int kStill = 1000;              // periods
 constexpr double kCountError = 0.5;       // counts between a measured and a true position
 constexpr double kCountedShare = 0.3;     // of a change of force that is counted at once
 constexpr double kMostAcceleration = 60;  // m/s², of a hand
@@ -37,6 +41,31 @@ constexpr double kFree = 1e-3;          // N below which a force is none
 Vec3 limited(const Vec3& v, double most) {
     const double size = glm::length(v);
     return size > most ? v * (most / size) : v;
+}
+
+/// Δx̂: the motion of the arm in the j-th period from the last one on, m. Two low passes in a row of τ = 4 ms lag by τ a
+/// and 2 τ a of a speed that grows by a m/s²: their difference takes the lag away. A count stirs it up by 0.4 of a
+/// count in the next period, by a whole one in the 13th.
+Vec3 expected_motion(const LawState& s, std::size_t j) {
+    const double ahead = 1 + static_cast<double>(j) * std::expm1(T / kVelocityTime);
+    return T * (s.arm.velocity + ahead * (s.arm.velocity - s.arm.velocity_before));
+}
+
+/// Step 1: moves x on, and returns by what.
+Vec3 follow_arm(const LawOptions& options, LawState& s, const Vec3& measured) {
+    ArmMotion& arm = s.arm;
+    const double count = options.limits.count * options.scale, passed = settled_part(T, kVelocityTime);
+    const Vec3 next = expected_motion(s, 1), before = arm.position;
+    arm.still = measured == arm.measured ? arm.still + 1 : 0;
+    arm.measured = measured;
+    arm.position = measured + limited(before + next - measured, kWithin * count);
+    const Vec3 moved = arm.position - before;
+    // An arm that still moved would have come to other counts by now.
+    const bool stopped = glm::length(next) * arm.still > kStopped * count || arm.still >= kStill;
+    if (stopped) arm.still = kStill;
+    arm.velocity += ((stopped ? Vec3{0} : moved / T) - arm.velocity) * passed;
+    arm.velocity_before += (arm.velocity - arm.velocity_before) * passed;
+    return moved;
 }
 
 /// Step 2.
@@ -94,21 +123,13 @@ const Vec3& sent_before(const LawState& s, std::size_t i) {
     return s.sent.ring[(s.sent.n + s.sent.ring.size() - i) % s.sent.ring.size()];
 }
 
-/// The force that acted since x′ moved, N: of those with each of two delays, which are not known to a period, the one
-/// that took more energy from the tank.
-struct Acted {
-    Vec3 mean{0};
-    double taken = 0;  // J
-};
-
-Acted acted_over(const LawState& s, const Vec3& moved) {
-    const double n = static_cast<double>(std::max<std::size_t>(1, s.tank.n_acted));
-    Acted acted{s.tank.acted[0] / n};
-    acted.taken = glm::dot(acted.mean, moved);
+/// The force that acted in the last period, N: of those with each of two delays, which are not known to a period, the
+/// one that took more energy from the tank.
+const Vec3& acted_over(const LawState& s, const Vec3& moved) {
+    const Vec3& acted = sent_before(s, s.sent.delay + 1);
     if (s.sent.delay == 0) return acted;
-    const Vec3 later = s.tank.acted[1] / n;
-    if (glm::dot(later, moved) > acted.taken) acted = {later, glm::dot(later, moved)};
-    return acted;
+    const Vec3& later = sent_before(s, s.sent.delay + 2);
+    return glm::dot(later, moved) > glm::dot(acted, moved) ? later : acted;
 }
 
 /// f_r, N: what the arm's friction takes back from a force that moves it. Only with restore, which gives the hand more
@@ -117,24 +138,19 @@ double paid_by_friction(const LawOptions& options) {
     return options.restore ? kFrictionShare * options.limits.friction : 0;
 }
 
-/// Step 6 before the force of this period: what the last ones have given.
-void settle_tank(const LawOptions& options, LawState& s, const LawInput& in) {
+/// Step 6 before the force of this period: what the last one has given over the path `moved` of x.
+void settle_tank(const LawOptions& options, LawState& s, const LawInput& in, const Vec3& moved) {
     const double count = options.limits.count * options.scale;
-    s.tank.acted[0] += sent_before(s, s.sent.delay + 1);
-    s.tank.acted[1] += sent_before(s, s.sent.delay + 2);
-    ++s.tank.n_acted;
-    if (const Vec3 moved = in.arm - s.tank.played; glm::length(moved) > kFlicker * count) {
-        const Acted acted = acted_over(s, moved);
-        // The true position is within half a count: by Abel's sum its work differs by that times the change of force.
-        // What counts stir up in the damper's force goes against their error and takes no energy: it is smoothed out.
-        const Vec3 change = kCountedShare * (acted.mean - s.tank.counted_force);
-        s.tank.energy -= acted.taken + kCountError * count * glm::length(change);
-        s.tank.counted_force += change;
-        s.tank.landed += glm::length(moved);
-        s.tank.energy += paid_by_friction(options) * std::max(0.0, glm::length(moved) - count);
-        s.tank.played = in.arm;
-        s.tank.acted = {};
-        s.tank.n_acted = 0;
+    const Vec3& acted = acted_over(s, moved);
+    // The true position is within a count: by Abel's sum its work differs by that times the change of force. What
+    // counts stir up in a force goes against their error and takes no energy: it is smoothed out.
+    const Vec3 change = kCountedShare * (acted - s.tank.counted_force);
+    s.tank.energy -= glm::dot(acted, moved) + kCountError * count * glm::length(change);
+    s.tank.counted_force += change;
+    if (const double path = glm::distance(s.arm.position, s.tank.played); path > kFlicker * count) {
+        s.tank.landed += path;
+        s.tank.energy += paid_by_friction(options) * std::max(0.0, path - count);
+        s.tank.played = s.arm.position;
     }
     s.tank.energy -= glm::dot(s.moment, turn_between(s.arm.rotation, in.rotation));
 }
@@ -176,23 +192,22 @@ double landing_loan(const LawOptions& options, const LawState& s) {
     return 0.5 * coupling_of(options) * b * b * std::clamp(2 - 0.5 * s.tank.landed / b, 0.0, 1.0);
 }
 
-/// Δx̂: the motion of the arm in the j-th period from the last one on, m. Two low passes in a row of τ = 4 ms lag by τ a
-/// and 2 τ a of a speed that grows by a m/s²: their difference takes the lag away. A count stirs it up by 0.4 of a
-/// count in the next period, by a whole one in the 13th.
-Vec3 expected_motion(const LawState& s, std::size_t j) {
-    const double ahead = 1 + static_cast<double>(j) * std::expm1(T / kVelocityTime);
-    return T * (s.arm.velocity + ahead * (s.arm.velocity - s.arm.velocity_before));
+/// By what a spring of k_max follows the last period's motion `moved`, N. A velocity is late, a motion has counts in
+/// it: the lesser is never more than the motion by much.
+double following_force(const LawOptions& options, const LawState& s, const Vec3& moved) {
+    return options.limits.max_stiffness / options.scale *
+           std::min(glm::length(moved), glm::length(expected_motion(s, 0)));
 }
 
-/// By what a spring of k_max follows the motion of the last period, N.
-double following_force(const LawOptions& options, const LawState& s) {
-    return options.limits.max_stiffness / options.scale * glm::length(expected_motion(s, 0));
+/// Periods until a force acts, by the longer of two delays.
+std::size_t periods_on_the_way(const LawState& s) {
+    return s.sent.delay > 0 ? s.sent.delay + 1 : 0;
 }
 
 /// e′, J.
 double energy_left(const LawOptions& options, const LawState& s) {
     double pending = 0;  // what forces on their way will take, by the longer of two delays
-    const std::size_t n = s.sent.delay > 0 ? s.sent.delay + 1 : 0;
+    const std::size_t n = periods_on_the_way(s);
     for (std::size_t i = 1; i <= n; ++i)
         pending += std::max(0.0, glm::dot(sent_before(s, i), expected_motion(s, n + 1 - i)));
     return std::max(0.0, s.tank.energy + landing_loan(options, s) - pending);
@@ -216,13 +231,11 @@ double spring_force(double k, double left, double ahead) {
 /// it.
 double most_force(const LawOptions& options, const LawState& s, double left, const Vec3& moved, const Vec3& u) {
     const double last = std::max(0.0, glm::dot(s.force, u));
-    const Vec3 next = expected_motion(s, 1);
-    // A restored force may end while it is great; x′ comes to know of what it takes by so much at once.
-    const double hidden = options.restore ? kFlicker * options.limits.count * options.scale : 0;
-    const double kept = left - kReserve * last * std::max(0.0, glm::dot(next, u)) - last * hidden;
+    const Vec3 next = expected_motion(s, periods_on_the_way(s) + kPlannedAhead);
+    const double kept = left - kReserve * last * std::max(0.0, glm::dot(next, u));
     const double planned = spring_force(tank_stiffness(options), std::max(0.0, kept), path_ahead(options, s, next, u));
     const double paid = paid_by_friction(options),
-                 most = std::max(planned + paid, last - following_force(options, s) - kFallFree),
+                 most = std::max(planned + paid, last - following_force(options, s, moved) - kFallFree),
                  ahead = path_ahead(options, s, moved, u);
     return ahead > 0 ? std::min(most, left / ahead + paid) : most;
 }
@@ -262,7 +275,7 @@ Vec3 turn_between(const Quat& before, const Quat& now) {
 void restart_law(LawState& state, const Vec3& arm, const Quat& rotation) {
     state = {};
     state.started = true;
-    state.arm.position = state.root.position = state.tank.played = arm;
+    state.arm.measured = state.arm.position = state.root.position = state.tank.played = arm;
     state.arm.rotation = rotation;
     state.tank.energy = kTankKeeps;
 }
@@ -270,35 +283,31 @@ void restart_law(LawState& state, const Vec3& arm, const Quat& rotation) {
 LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     if (!s.started) restart_law(s, in.arm, in.rotation);
     const double K = coupling_of(options), B = 2 * std::sqrt(K * kRootMass), m = kRootMass;
-    const Vec3 moved = in.arm - s.arm.position, turned = turn_between(s.arm.rotation, in.rotation);
+    const Vec3 moved = follow_arm(options, s, in.arm), turned = turn_between(s.arm.rotation, in.rotation);
     s.sent.delay = static_cast<std::size_t>(std::clamp(std::ceil(options.delay / T - 1e-9), 0.0, kMostDelayed));
-    settle_tank(options, s, in);
-    const double passed = settled_part(T, kVelocityTime);
-    s.arm.velocity += (moved / T - s.arm.velocity) * passed;
-    s.arm.velocity_before += (s.arm.velocity - s.arm.velocity_before) * passed;
-    s.arm.position = in.arm;
+    settle_tank(options, s, in, moved);
     s.arm.rotation = in.rotation;
 
     const double gain = options.gain * in.trust;
     const Vec3 hair = in.hair ? gain * in.hair->force : Vec3{0};
     const Vec3 g = faded(options, s, hair, glm::length(moved), in.hair ? in.hair->pose.position : s.fade.root);
-    const Vec3 pull = K * (in.arm + s.root.restored - s.root.position) + B * s.arm.velocity + g;
+    const Vec3 pull = K * (s.arm.position + s.root.restored - s.root.position) + B * s.arm.velocity + g;
     Vec3 velocity = (m * s.root.velocity + T * pull) / (m + T * (K * T + B));
     Vec3 root = s.root.position + T * velocity;
     BoundReaction held;
     if (in.hair) held = hold_to_bounds(options, *in.hair, root, velocity);
     s.root.position = root;
     s.root.velocity = velocity;
-    const Vec3 stretch = root - in.arm - s.root.restored;
+    const Vec3 stretch = root - s.arm.position - s.root.restored;
     Vec3 f = K * stretch + B * (velocity - s.arm.velocity);
-    if (options.restore) s.root.restored += (T / kRestoreTime) * (in.arm - root);
+    if (options.restore) s.root.restored += (T / kRestoreTime) * (s.arm.position - root);
 
     const double wanted = glm::length(f);
     f = limited(f, std::min(options.limits.max_force, options.most_force)) * in.pass;
     // A blow of the ferrule is felt as one. What safety fades gets smaller at once, but does not grow in a step.
     const bool fades = in.pass < 1 || in.trust < 1;
     if (!held.hard && (!fades || glm::length(f) > glm::length(s.force)))
-        f = s.force + limited(f - s.force, following_force(options, s) + kStep);
+        f = s.force + limited(f - s.force, following_force(options, s, moved) + kStep);
 
     const bool touching = in.hair && (in.hair->touching || held.hard || in.hair->force != Vec3{0});
     s.coupled = 0.5 * K * glm::dot(stretch, stretch) + 0.5 * m * glm::dot(velocity, velocity);

@@ -11,11 +11,14 @@
 /// force on the hand. Pure: no clock, no thread, no memory allocation. `Servo` (servo.h) calls it.
 ///
 /// Frame: world, metres at the brush. x is the arm, y the virtual root of the tuft, which a coupling holds to the arm.
-/// Hair is solved at y, and the stroke is painted from y. In each period:
+/// Hair is solved at y, and the stroke is painted from y. The arm reads its place in counts. Where it moves on as it
+/// did, it has come on by Δx̂ (step 6) within them: x = x_c + [x + Δx̂ − x_c], of at most half a count, x_c what is
+/// measured. So counts stir up neither spring nor damper, and x does not flicker between two of them. In each period:
 ///
 /// 1. g = G F(y, q).
-/// 2. Fade. What g jumps beyond a = min(k_max, 1000 N/m) |Δx| + 0.01 N goes into an offset o −= jump − a; |o| falls by
-///    0.06 N a period; g += o.
+/// 2. Fade. What g jumps beyond a = min(k_max, 1000 N/m) |Δx| + 2 m/T² |Δy| + 0.01 N goes into an offset o −= jump − a;
+///    |o| falls by 0.06 N a period; g += o. The second term is what the root's own motion may do to hair that is half
+///    as stiff as step 3 bears: late, it would make the root swing.
 /// 3. Coupling, implicit [Colgate1995], [Adams1999]:
 ///
 ///        v⁺ = (m v + T (K (x + s − y) + B v_x + g)) / (m + T (K T + B)),   y += T v⁺,
@@ -26,16 +29,15 @@
 /// 4. Restore, optional: s += (T / 0.15 s) (x − y) takes the softness of the coupling away in the long run. The hand
 /// has
 ///    then pressed a softer spring than the hair that it feels. The friction of the arm pays for it: e += f_r (|Δx′| −
-///    count), and f_r = 0.7 f_c is added to the limits of |f| in step 6. Port and wrist alone may then give energy
-///    back.
+///    count), x′ following x behind a play of 1.8 counts, and f_r = 0.7 f_c is added to the limits of |f| in step 6.
+///    Port and wrist alone may then give energy back.
 /// 5. Clamp to the device and to 7.9 N. A moment is scaled with its force. While only hair touches, f changes by at
-///    most k_max |Δx̂| + 0.12 N, but for a fade, in which it may get smaller at once: the damper alone gives 0.3 N in a
+///    most k_max |Δx̂| + 0.1 N, but for a fade, in which it may get smaller at once: the damper alone gives 0.3 N in a
 ///    period to a hand that turns round at 60 m/s².
-/// 6. Tank (a passivity observer and controller [Hannaford2002]): e −= f₋ · Δx′ + ½ count |Δf₋|, e −= G τ · Δθ. x′ is
-///    the position measured, but stays while that flickers within 1.8 counts. f₋ is the mean of the forces that acted
-///    meanwhile, sent as long ago as the delay says (of two periods the worse). The true position is within half a
-///    count of the measured one, so that by Abel's summation the second term, of f₋ smoothed over three of its motions,
-///    bounds what the count hides.
+/// 6. Tank (a passivity observer and controller [Hannaford2002]): e −= f₋ · Δx + ½ count |Δf̄|, e −= G τ · Δθ. f₋ is
+///    the force that acted, sent as long ago as the delay says (of two periods the worse), f̄ the same low-passed at
+///    3 ms. x and the true position are between the same two counts, and equal where one count becomes the next, so
+///    that by Abel's summation the second term pays for what the count hides.
 ///    e <= e_0 + G stored + ½ K |y − x − s|² + ½ m v², e_0 = 30 µJ. A contact begins with e = ½ K |y − x − s|² + ½ m
 ///    v², which came from the hand. An empty tank is filled to 0.5 µJ, with 0.8 µJ at most in a contact, from which a
 ///    hand that moves fills it by itself. When free, e is at least e_0.
@@ -45,10 +47,9 @@
 ///
 ///    e′ is e + w less what forces on their way will take, by the longer of two delays. It keeps e >= 0. P lets a force
 ///    that ends with its energy fall by k â a period at most: it takes the motion Δx̂ that goes on as the arm has sped
-///    up, without its counts (â as a, with Δx̂), and e″ = e′ − ½ f₋₁ · Δx̂. f₋₁ is the force of the period before. Where
+///    up (â as a, with Δx̂), and e″ = e′ − ½ f₋₁ · Δx̂. f₋₁ is the force of the period before. Where
 ///    â <= 0 the tank only fills: P = √(2 k e″) − k â. Where a <= 0, e′ / a sets no limit. Δx̂ is of the last period in
-///    k_max |Δx̂|, of the next one in â and e″. With restore e″ is less by 1.8 counts of f₋₁, of which x′ does not know
-///    yet: the force has to fall while the tank can still pay for it.
+///    k_max |Δx̂|, where it is not more than |Δx|, and of the second next one, behind the delay, in â and e″.
 ///    A landing lends w = ½ K b², b = ½ count + a of a hand at rest: so much a spring of K lacks, pressed slowly from
 ///    nothing, to keep what the limit of |f| asks for. w ends linearly between 2 b and 4 b of the contact's path.
 ///
@@ -71,6 +72,8 @@ struct LawOptions {
 /// The arm in the period before.
 struct ArmMotion {
     Vec3 position{0};           ///< x, m
+    Vec3 measured{0};           ///< m
+    int still = 0;              ///< periods in which that has not changed
     Quat rotation{1, 0, 0, 0};  ///< q
     Vec3 velocity{0};           ///< v_x, m/s, low-passed
     Vec3 velocity_before{0};    ///< m/s, v_x low-passed once more: 4 ms behind it
@@ -99,13 +102,11 @@ struct SentForces {
 
 /// Step 6.
 struct EnergyTank {
-    double energy = 0;            ///< e, J
-    double lent = 0;              ///< J, to an empty tank in this contact
-    double landed = 0;            ///< m, path of x′ since the contact began
-    Vec3 played{0};               ///< x′, m
-    std::array<Vec3, 2> acted{};  ///< N, sums since x′ moved, of the force with the delay and one period more
-    std::size_t n_acted = 0;      ///< forces in each
-    Vec3 counted_force{0};        ///< N, f₋ smoothed
+    double energy = 0;      ///< e, J
+    double lent = 0;        ///< J, to an empty tank in this contact
+    double landed = 0;      ///< m, path of x′ since the contact began
+    Vec3 played{0};         ///< x′, m
+    Vec3 counted_force{0};  ///< N, f₋ smoothed
 };
 
 /// State of the law between two periods.
