@@ -218,6 +218,7 @@ TEST_F(Trajectories, AreWrittenInEachLanguageAndRefusedWhereTheHolderHits) {
     const std::string project = bowl();
     for (const char* name : {"a.urscript", "a.mod", "a.src", "a.csv"})
         EXPECT_EQ(tuft("trajectory " + project + " --quiet -o " + path(name)).status, 0) << name;
+    EXPECT_NE(read(path("a.src")).find("DEF a( )"), std::string::npos) << "KUKA wants the file's name";
     const test::Ran lean = tuft("trajectory " + project + " -o " + path("a.gcode"));
     EXPECT_EQ(lean.status, 1);
     EXPECT_NE(lean.err.find("G-code holds it upright"), std::string::npos) << lean.err;

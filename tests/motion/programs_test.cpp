@@ -95,6 +95,61 @@ TEST(Programs, KrlHoldsEulerAnglesAboutZYX) {
     EXPECT_LT(glm::length(q * Vec3(1, 0, 0) - Vec3(1, 0, 0)), 1e-5);
 }
 
+/// The hand rests for 0.4 s, drifts by 10 nm in 0.3 s, which no program's digits hold, and creeps by 20 um in 0.5 s.
+MotionProgram resting() {
+    MotionProgram p = program(0);
+    std::vector<motion::Waypoint>& points = p.trajectory.moves[1].points;
+    for (const auto& [x, time] : {std::pair{0.0, 0.4}, {1e-8, 0.3}, {2e-5, 0.5}}) {
+        motion::Waypoint next = points.back();
+        next.pose.position.x += x;
+        next.pose.time += time;
+        points.push_back(next);
+    }
+    return p;
+}
+
+// A speed of 0 is refused by controllers, and one that they raise loses the time in which ink flows.
+TEST(Programs, WhereTheHandRestsTheToolWaits) {
+    const MotionProgram p = resting();
+    const auto waits = [&](const std::string& text, const std::string& wait) {
+        std::vector<double> all;
+        for (const std::vector<double>& found : numbers_in(text, std::regex(wait))) all.push_back(found[0]);
+        return all;
+    };
+    EXPECT_EQ(waits(urscript_text(p), "sleep\\(" + kNumber + "\\)"), (std::vector{0.4, 0.3}));
+    EXPECT_EQ(waits(rapid_text(p), "WaitTime \\\\InPos, " + kNumber), (std::vector{0.4, 0.3}));
+    EXPECT_EQ(waits(gcode_text(p), "G4 P" + kNumber), (std::vector{0.4, 0.3}));
+    // KRL's path is 0.1 mm/s fast at least: the creep's 20 um take 0.2 s of their 0.5 s.
+    EXPECT_EQ(waits(krl_text(p), "WAIT SEC " + kNumber), (std::vector{0.4, 0.3, 0.3}));
+    for (const double v : waits(urscript_text(p), " v=" + kNumber)) EXPECT_GE(v, 1e-4);
+    for (const double feed : waits(gcode_text(p), " F" + kNumber)) EXPECT_GT(feed, 0);
+}
+
+// The path of a holder that turns in its place has no length: in KRL its turn has a speed.
+TEST(Programs, KrlTurnsInItsPlaceInItsTime) {
+    MotionProgram p = program(0);
+    p.trajectory.moves[1].points[2].pose = p.trajectory.moves[1].points[1].pose;
+    p.trajectory.moves[1].points[2].pose.rotation = glm::angleAxis(0.5, Vec3(0, 0, 1));
+    p.trajectory.moves[1].points[2].pose.time += 2;
+    const auto speeds = numbers_in(krl_text(p), std::regex("VEL.ORI1 = " + kNumber));
+    ASSERT_EQ(speeds.size(), 2u);
+    EXPECT_NEAR(speeds[0][0], p.limits.turn * 180 / kPi, 1e-4);
+    EXPECT_NEAR(speeds[1][0], 0.25 * 180 / kPi, 1e-4);
+}
+
+// KUKA's controllers want the file's name; no language takes its own words as names, nor `main` beside RAPID's `main`.
+TEST(Programs, TitlesAreNamesInEachLanguage) {
+    EXPECT_EQ(program_title("/a/b.c/bowl_2.src"), "bowl_2");
+    for (const char* word : {"end", "Main", "LIN", "movel", "tBrush", "True", "with"})
+        EXPECT_EQ(program_title(word + std::string(".mod")), "p_" + std::string(word));
+    EXPECT_EQ(program_title("ending.src"), "ending");
+    for (const char* odd :
+         {"7 bowls.src", "\xe7\x9b\x98.src", "_.src", "it's a (very) long name, of a bowl.src", ".src"}) {
+        const std::string name = program_title(odd);
+        EXPECT_TRUE(std::regex_match(name, std::regex("[A-Za-z][A-Za-z0-9_]{0,23}"))) << name;
+    }
+}
+
 // Before INITMOV a controller has no speeds of axes and of turning, and INITMOV resets the tool.
 TEST(Programs, KrlInitialisesMotionBeforeItSetsTheTool) {
     const std::string text = krl_text(program(0.3));
@@ -111,7 +166,14 @@ TEST(Programs, GCodeIsForUprightBrushesOnly) {
     ASSERT_EQ(lines.size(), 3u);
     EXPECT_NEAR(lines[2][0], 20, 1e-3);
     EXPECT_NEAR(lines[2][3], 3000, 0.1);  // 50 mm/s
-    EXPECT_THROW(gcode_text(program(0.3)), Error);
+    MotionProgram leans = program(0);
+    leans.trajectory.moves[1].points[2].pose.rotation = glm::angleAxis(0.3, Vec3(1, 0, 0));
+    try {
+        gcode_text(leans);
+        ADD_FAILURE() << "a plotter cannot lean its brush";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("leans by 17 degrees"), std::string::npos) << error.what();
+    }
 }
 
 class TrajectoryFile : public testing::Test {

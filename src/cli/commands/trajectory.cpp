@@ -119,14 +119,6 @@ void make_upright(std::vector<motion::StrokePath>& strokes, Console& console) {
                         std::lround(most / kDegree), counted(leaning, "stroke")));
 }
 
-std::string program_name(const std::filesystem::path& path) {
-    std::string name = path.stem().string();
-    for (char& c : name)
-        if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-    if (name.empty() || !std::isalpha(static_cast<unsigned char>(name[0]))) name = "p_" + name;
-    return name.substr(0, 24);  // KRL's longest name
-}
-
 }  // namespace
 
 int run(const TrajectoryWork& a) {
@@ -167,7 +159,7 @@ int run(const TrajectoryWork& a) {
     program.strokes = std::move(painted.strokes);
     program.base = frame_of(a.base);
     program.tool = frame_of(a.tool);
-    program.title = program_name(a.project);
+    program.title = io::program_title(a.output);
     io::write_trajectory(a.output, program);
     console.clear();
     std::size_t points = 0;

@@ -26,12 +26,16 @@ struct MotionProgram {
     MotionFrame base;                             ///< of the model in the robot's base frame
     MotionFrame tool{{0, 0, 0.1}, {1, 0, 0, 0}};  ///< TCP in the flange frame
     motion::Limits limits;
-    std::string title;  ///< a name of letters, digits and _
+    std::string title;  ///< see `program_title`
 };
 
 /// Returns where the TCP is for a pose of the ferrule, in the robot's base frame. The TCP's z axis points out of the
 /// tool, along the hair; its x axis is the ferrule's.
 MotionFrame tcp_of(const brush::Pose& pose, const MotionFrame& base);
+
+/// Returns the name of a program in a file: the file's, as KUKA's controllers ask for, in the letters, digits and _
+/// that all languages take, at most 24 of them. It is none of their words, in any case.
+std::string program_title(const std::filesystem::path& file);
 
 /// Writes a program; the extension chooses the form.
 ///
@@ -43,6 +47,9 @@ MotionFrame tcp_of(const brush::Pose& pose, const MotionFrame& base);
 /// | .mod | RAPID of ABB | `MoveL` with `\T`: mm, quaternion |
 /// | .src | KRL of KUKA | `LIN` with `$VEL.CP`: mm, degrees A B C about z, y, x |
 /// | .gcode, .nc | G-code of a plotter over a flat sheet | `G1`: mm, mm/min, of the ferrule's mouth |
+///
+/// Where the hand rests the tool waits (`sleep`, `WaitTime`, `WAIT SEC`, `G4`). A way slower than 0.1 mm/s keeps its
+/// time too: by `t`, `\T`, or, in KRL, by a wait at its end.
 ///
 /// Throws `Error` for another extension, for G-code of strokes whose holder leans by more than 3°, and where the file
 /// cannot be written.

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 
@@ -17,20 +18,28 @@ using motion::MoveKind;
 constexpr double kMm = 1000;
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kUpright = 3 / kDegrees;  // lean of a holder that a plotter can be taken for
+constexpr double kLeastSpeed = 1e-4;       // m/s; a slower hand waits at the end of its way
 
-/// A point, the speed of the straight line that leads to it, and its duration.
+/// A straight way to a place: metres, radians, seconds.
 struct Step {
     MotionFrame tcp;
-    double speed = 0, time = 0;
+    double length = 0, turn = 0, time = 0;
+
+    double speed() const { return time > 0 ? length / time : 0; }
 };
 
 template <class Visit>
 void for_steps(const Move& move, const MotionFrame& base, Visit&& visit) {
     for (std::size_t i = 1; i < move.points.size(); ++i) {
         const brush::Pose &a = move.points[i - 1].pose, &b = move.points[i].pose;
-        const double time = b.time - a.time;
-        visit(Step{tcp_of(b, base), time > 0 ? glm::length(b.position - a.position) / time : 0, time});
+        visit(Step{tcp_of(b, base), glm::length(b.position - a.position), motion::angle_between(a.rotation, b.rotation),
+                   b.time - a.time});
     }
+}
+
+/// Where the first move begins.
+MotionFrame start_of(const MotionProgram& program) {
+    return tcp_of(program.trajectory.moves.front().points.front().pose, program.base);
 }
 
 std::string comment_of(const MotionProgram& program, const Move& move) {
@@ -88,17 +97,21 @@ MotionFrame tcp_of(const brush::Pose& pose, const MotionFrame& base) {
 
 std::string urscript_text(const MotionProgram& program) {
     std::string text = fmt::format("def {}():\n  set_tcp({})\n", program.title, ur_pose(program.tool));
+    std::string at;
     for (const Move& move : program.trajectory.moves) {
         text += "  # " + comment_of(program, move) + "\n";
-        if (&move == &program.trajectory.moves.front())
-            text += fmt::format("  movej({}, a=0.5, v=0.3)\n", ur_pose(tcp_of(move.points.front().pose, program.base)));
+        if (at.empty()) text += fmt::format("  movej({}, a=0.5, v=0.3)\n", at = ur_pose(start_of(program)));
         for_steps(move, program.base, [&](const Step& step) {
-            if (move.kind == MoveKind::stroke && step.speed > 0)
-                text += fmt::format("  movep({}, a={:.4f}, v={:.6f}, r=0)\n", ur_pose(step.tcp),
-                                    program.limits.acceleration, step.speed);
+            const std::string to = ur_pose(step.tcp);
+            if (to == at)
+                text += fmt::format("  sleep({:.6f})\n", step.time);
+            else if (move.kind == MoveKind::stroke && step.speed() >= kLeastSpeed)
+                text += fmt::format("  movep({}, a={:.4f}, v={:.6f}, r=0)\n", to, program.limits.acceleration,
+                                    step.speed());
             else
-                text += fmt::format("  movel({}, a={:.4f}, v={:.6f}, t={:.6f}, r=0)\n", ur_pose(step.tcp),
-                                    program.limits.acceleration, std::max(step.speed, 1e-4), step.time);
+                text += fmt::format("  movel({}, a={:.4f}, v={:.6f}, t={:.6f}, r=0)\n", to, program.limits.acceleration,
+                                    std::max(step.speed(), kLeastSpeed), step.time);
+            at = to;
         });
     }
     return text + "end\n" + program.title + "()\n";
@@ -109,34 +122,55 @@ std::string rapid_text(const MotionProgram& program) {
         "MODULE {0}\n  PERS tooldata tBrush := [TRUE, [{1}], [0.5, [0, 0, 50], [1, 0, 0, 0], 0, 0, 0]];\n"
         "  PROC main()\n    ConfL \\Off;\n    AccSet 100, 100;\n",
         program.title, rapid_pose(program.tool));
-    const auto target = [](const MotionFrame& f) {
-        return fmt::format("[{}, [0, 0, 0, 0], [9E9, 9E9, 9E9, 9E9, 9E9, 9E9]]", rapid_pose(f));
+    const auto target = [](const std::string& pose) {
+        return fmt::format("[{}, [0, 0, 0, 0], [9E9, 9E9, 9E9, 9E9, 9E9, 9E9]]", pose);
     };
+    std::string at;
     for (const Move& move : program.trajectory.moves) {
         text += "    ! " + comment_of(program, move) + "\n";
-        if (&move == &program.trajectory.moves.front())
-            text += fmt::format("    MoveJ {}, v200, fine, tBrush;\n",
-                                target(tcp_of(move.points.front().pose, program.base)));
+        if (at.empty())
+            text += fmt::format("    MoveJ {}, v200, fine, tBrush;\n", target(at = rapid_pose(start_of(program))));
         for_steps(move, program.base, [&](const Step& step) {
-            text += fmt::format("    MoveL {}, [{:.4f}, 90, 200, 15] \\T:={:.6f}, z0, tBrush;\n", target(step.tcp),
-                                std::max(kMm * step.speed, 0.1), step.time);
+            const std::string to = rapid_pose(step.tcp);
+            if (to == at)
+                text += fmt::format("    WaitTime \\InPos, {:.6f};\n", step.time);
+            else
+                text += fmt::format("    MoveL {}, [{:.4f}, 90, 200, 15] \\T:={:.6f}, z0, tBrush;\n", target(to),
+                                    std::max(kMm * step.speed(), kMm * kLeastSpeed), step.time);
+            at = to;
         });
     }
     return text + "  ENDPROC\nENDMODULE\n";
 }
 
 std::string krl_text(const MotionProgram& program) {
-    // INITMOV gives the speeds of axes and of turning, which a controller does not start with, and resets $TOOL.
+    const auto turning = [](double speed) {
+        return fmt::format("  $VEL.ORI1 = {0:.4f}\n  $VEL.ORI2 = {0:.4f}\n", kDegrees * speed);
+    };
+    const std::string fastest = turning(program.limits.turn);
+    // INITMOV gives the speeds of axes, which a controller does not start with, and resets $TOOL.
     std::string text = fmt::format(
-        "&ACCESS RVP\nDEF {0}( )\n  BAS (#INITMOV, 0)\n  $TOOL = {1}\n  $BASE = $NULLFRAME\n  $ACC.CP = {2:.4f}\n  "
-        "$APO.CDIS = 0.1\n",
-        program.title, krl_pose(program.tool), program.limits.acceleration);
+        "&ACCESS RVP\nDEF {0}( )\n  BAS (#INITMOV, 0)\n  $TOOL = {1}\n  $BASE = $NULLFRAME\n  $ACC.CP = {2:.4f}\n{3}"
+        "  $APO.CDIS = 0.1\n",
+        program.title, krl_pose(program.tool), program.limits.acceleration, fastest);
+    std::string at, turns = fastest;
     for (const Move& move : program.trajectory.moves) {
         text += "  ; " + comment_of(program, move) + "\n";
-        if (&move == &program.trajectory.moves.front())
-            text += "  PTP " + krl_pose(tcp_of(move.points.front().pose, program.base)) + "\n";
+        if (at.empty()) text += "  PTP " + (at = krl_pose(start_of(program))) + "\n";
         for_steps(move, program.base, [&](const Step& step) {
-            text += fmt::format("  $VEL.CP = {:.6f}\n  LIN {} C_DIS\n", std::max(step.speed, 1e-4), krl_pose(step.tcp));
+            const std::string to = krl_pose(step.tcp);
+            if (to == at) {
+                text += fmt::format("  WAIT SEC {:.6f}\n", step.time);
+                return;
+            }
+            at = to;
+            // A holder that turns in its place has no speed of the path: that of its turn keeps the time.
+            const double spare = step.time - step.length / kLeastSpeed;
+            const bool in_place = spare > 0 && step.turn > 1e-6;
+            const std::string turn = in_place ? turning(step.turn / step.time) : fastest;
+            if (turn != turns) text += turns = turn;
+            text += fmt::format("  $VEL.CP = {:.6f}\n  LIN {} C_DIS\n", std::max(step.speed(), kLeastSpeed), to);
+            if (spare > 0 && !in_place) text += fmt::format("  WAIT SEC {:.6f}\n", spare);
         });
     }
     return text + "END\n";
@@ -144,27 +178,55 @@ std::string krl_text(const MotionProgram& program) {
 
 std::string gcode_text(const MotionProgram& program) {
     std::string text = fmt::format("({})\nG21\nG90\nG94\n", program.title);
+    const auto place = [](const MotionFrame& f) {
+        return fmt::format("X{:.4f} Y{:.4f} Z{:.4f}", kMm * f.position.x, kMm * f.position.y, kMm * f.position.z);
+    };
+    std::string at;
     for (const Move& move : program.trajectory.moves) {
         text += "(" + comment_of(program, move) + ")\n";
+        double lean = 0;
         for (const motion::Waypoint& p : move.points)
-            if (const double lean = std::acos(std::clamp(-p.pose.axis().z, -1.0, 1.0)); lean > kUpright)
-                throw Error(
-                    Message("stroke {}: its holder leans by {} degrees, but G-code holds it upright; write another "
-                            "form",
-                            move.stroke + 1, std::lround(kDegrees * lean)));
-        if (&move == &program.trajectory.moves.front()) {
-            const Vec3 p = kMm * tcp_of(move.points.front().pose, program.base).position;
-            text += fmt::format("G0 X{:.4f} Y{:.4f} Z{:.4f}\n", p.x, p.y, p.z);
-        }
+            lean = std::max(lean, std::acos(std::clamp(-p.pose.axis().z, -1.0, 1.0)));
+        if (lean > kUpright)
+            throw Error(
+                Message("stroke {}: its holder leans by {} degrees, but G-code holds it upright; write another form",
+                        move.stroke + 1, std::lround(kDegrees * lean)));
+        if (at.empty()) text += "G0 " + (at = place(start_of(program))) + "\n";
         for_steps(move, program.base, [&](const Step& step) {
-            const Vec3 p = kMm * step.tcp.position;
-            if (step.speed > 0)
-                text += fmt::format("G1 X{:.4f} Y{:.4f} Z{:.4f} F{:.3f}\n", p.x, p.y, p.z, 60 * kMm * step.speed);
-            else
+            const std::string to = place(step.tcp);
+            if (to == at)
                 text += fmt::format("G4 P{:.4f}\n", step.time);
+            else  // a controller refuses a feed of 0
+                text += fmt::format("G1 {} F{:.6f}\n", to, std::max(60 * kMm * step.speed(), 1e-6));
+            at = to;
         });
     }
     return text + "M2\n";
+}
+
+std::string program_title(const std::filesystem::path& file) {
+    // Words of the three languages, and what the programs call.
+    static constexpr std::string_view kTaken =
+        " accset alias and anin anout backward bas bool brake break case char circ circ_rel confl connect const "
+        "continue "
+        "decl def default defdat deffct delay div do elif else elseif end enddat endfct endfor endfunc endif endloop "
+        "endmodule endproc endrecord endswitch endtest endtrap endwhile enter_critical enum error exit exit_critical "
+        "exor ext extfct false fine for from func global goto halt if import in inout int interrupt is lin lin_rel "
+        "local "
+        "loop main maximum minimum mod module movej movel movep nostepin not noview or pers prio proc ptp ptp_rel "
+        "public "
+        "raise readonly real record repeat retry return sec set_tcp signal sleep step struc switch sysmodule tbrush "
+        "test "
+        "then thread to trap trigger true trynext undo until var viewonly wait waittime when while with xor ";
+    std::string name = file.stem().string();
+    for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+    std::string word = " ";
+    for (const char c : name) word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (name.empty() || !std::isalpha(static_cast<unsigned char>(name[0])) ||
+        kTaken.find(word + " ") != std::string_view::npos)
+        name = "p_" + name;
+    return name.substr(0, 24);  // the longest name that KRL takes
 }
 
 }  // namespace tuft::io
