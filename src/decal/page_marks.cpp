@@ -122,10 +122,16 @@ void add_marks(Page& page, const FootText& text) {
     add_text(page, "GRAIN", {grain - 4 * kMm, foot.y}, kTextSize);
     add_arrow(page, {page.size.x - kPageMargin - 3 * kMm, foot.y + 8 * kMm}, {0, 1}, 8 * kMm);
     const auto letters = static_cast<std::size_t>(std::max(0.0, (grain - 6 * kMm - x) / kTextSize));
-    const std::string second = fmt::format("PAGE {}/{}  TRUE SIZE 1:1  STRAIN UP TO {:.1f} %{}", text.page, text.pages,
-                                           100 * text.limit, page.strain_map ? "  STRAIN MAP" : "");
-    add_text(page, text.title.substr(0, std::min(kLongestTitle, letters)), {x, foot.y + 5 * kMm}, kTextSize);
-    add_text(page, second.substr(0, letters), {x, foot.y}, kTextSize);
+    const std::string of_map = page.strain_map ? "  STRAIN MAP" : "";
+    const std::size_t longest = std::min(kLongestTitle, letters - std::min(letters, of_map.size()));
+    add_text(page, text.title.substr(0, longest) + of_map, {x, foot.y + 5 * kMm}, kTextSize);
+    const std::string pages = fmt::format("PAGE {}/{}", text.page, text.pages),
+                      strain = fmt::format("  STRAIN {:.1f} OF {:.1f} %", 100 * text.strain, 100 * text.limit);
+    for (const std::string& second : {pages + "  TRUE SIZE 1:1" + strain, pages + strain, pages})
+        if (second.size() <= letters) {
+            add_text(page, second, {x, foot.y}, kTextSize);
+            break;
+        }
 }
 
 }  // namespace tuft::decal

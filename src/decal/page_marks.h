@@ -29,7 +29,8 @@ void add_label(Page& page, int number, const Vec2& at, const Vec2& up);
 struct FootText {
     std::string title;
     std::size_t page = 1, pages = 1;
-    double limit = 0;  ///< strain
+    double strain = 0;  ///< largest of the page's pieces
+    double limit = 0;   ///< of the strain
 };
 /// Draws registration marks, scale bar with millimetres, grain (along the page's height) and the foot; on a strain map
 /// the colours with their strains, too.

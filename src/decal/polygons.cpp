@@ -119,7 +119,11 @@ Region subtract(const Region& a, const Region& b) {
 
 Region offset(const Region& region, double distance) {
     if (distance == 0) return region;
-    return inflated(paths_of(region), clip::etClosedPolygon, distance);
+    if (distance > 0) return inflated(paths_of(region), clip::etClosedPolygon, distance);
+    // Clipper's own inward offset leaves spikes as long as the distance where an arc of many points shrinks to its
+    // centre: what lies within the distance of the border is taken away instead.
+    const Region border = simplify(region, kArcTolerance / kSteps);
+    return subtract(border, inflated(paths_of(border), clip::etClosedLine, -distance));
 }
 
 Region sweep(const std::vector<Vec2>& line, double distance) {

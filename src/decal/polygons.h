@@ -24,7 +24,7 @@ Region unite(const Region& a, const Region& b);
 Region intersect(const Region& a, const Region& b);
 Region subtract(const Region& a, const Region& b);
 /// Returns the points within `distance` of the region, or for a negative one those that far inside. Round corners,
-/// within 5 µm.
+/// within 5 µm outwards and 10 µm inwards.
 Region offset(const Region& region, double distance);
 /// Returns the points within `distance` of an open line, without its round ends.
 Region sweep(const std::vector<Vec2>& line, double distance);

@@ -21,6 +21,7 @@ namespace {
 constexpr double kLevel = 0.3;          // tangential part of "up" below which a panel is level
 constexpr double kBetween = 0.002;      // metres, least distance of two pieces' prints
 constexpr double kLeastSide = 0.010;    // metres
+constexpr double kHardlyLonger = 1.02;  // of a roll, that pieces may take to stand upright
 constexpr double kStrainPixel = 5e-4;   // metres, of strain maps
 constexpr double kFragment = 0.01;      // of the paint of the piece beyond the seam
 constexpr double kSpeck = 0.1;          // of `least_fragment`
@@ -243,9 +244,9 @@ Footprint footprint_of(const Piece& piece, double angle, double around) {
     return footprint;
 }
 
-std::vector<Footprint> footprints_of(const Piece& piece, const SheetOptions& options) {
+std::vector<Footprint> footprints_of(const Piece& piece, const SheetOptions& options, bool upright) {
     std::vector<double> angles;
-    if (options.upright) {
+    if (upright) {
         angles.push_back(upright_angle(piece.up));
     } else {
         const atlas::Rectangle box = atlas::smallest_rectangle(atlas::convex_hull(piece.film[0]));
@@ -257,34 +258,63 @@ std::vector<Footprint> footprints_of(const Piece& piece, const SheetOptions& opt
     return all;
 }
 
-/// Places all pieces; returns where each one's label lies on its page.
-std::vector<Vec2> place_pieces(std::vector<Piece>& pieces, const SheetOptions& options, std::vector<Page>& pages) {
-    std::vector<std::vector<Footprint>> footprints;
+/// All pieces on pages.
+struct Layout {
+    std::vector<std::vector<Footprint>> footprints;  // [n_pieces] in the orientations that a piece may take
+    std::vector<NestPlace> places;                   // [n_pieces]
+    std::size_t pages = 0;
+    double used = 0;  // metres of a roll
+    bool fits = true;
+
+    bool takes_no_more_than(const Layout& other) const {
+        return fits && other.fits && pages <= other.pages && used <= kHardlyLonger * other.used;
+    }
+};
+
+Layout lay_out(const std::vector<Piece>& pieces, const SheetOptions& options, bool upright) {
+    Layout layout;
     std::vector<NestItem> items;
     for (const Piece& piece : pieces) {
-        footprints.push_back(footprints_of(piece, options));
+        layout.footprints.push_back(footprints_of(piece, options, upright));
         items.emplace_back();
-        for (const Footprint& f : footprints.back()) items.back().shapes.push_back(f.shape);
+        for (const Footprint& f : layout.footprints.back()) items.back().shapes.push_back(f.shape);
     }
-    const std::vector<NestPlace> places = nest(items, free_area(options.page), kBetween);
-    std::vector<Vec2> labels;
-    double used = 0;
+    layout.places = nest(items, free_area(options.page), kBetween);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-        if (!places[i].fits) {
-            const Vec2 size = 1000.0 * box_of({items[i].shapes[0]}).size();
+        const NestPlace& place = layout.places[i];
+        layout.fits &= place.fits;
+        if (!place.fits) continue;
+        layout.pages = std::max(layout.pages, place.page + 1);
+        if (options.page.y == 0)
+            for (const Vec2& p : items[i].shapes[place.orientation])
+                layout.used = std::max(layout.used, p.y + place.offset.y);
+    }
+    return layout;
+}
+
+/// Places all pieces; returns where each one's label lies on its page.
+std::vector<Vec2> place_pieces(std::vector<Piece>& pieces, const SheetOptions& options, std::vector<Page>& pages) {
+    Layout layout = lay_out(pieces, options, options.upright);
+    if (!options.upright)
+        if (Layout upright = lay_out(pieces, options, true); upright.takes_no_more_than(layout))
+            layout = std::move(upright);
+    std::vector<Vec2> labels;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const NestPlace& place = layout.places[i];
+        if (!place.fits) {
+            const Vec2 size = 1000.0 * box_of({layout.footprints[i][0].shape}).size();
             throw Error(Message("piece {} of {} x {} mm fits no page; choose a larger one, or let pieces be turned",
                                 pieces[i].number, std::lround(size.x), std::lround(size.y)));
         }
-        const Footprint& f = footprints[i][places[i].orientation];
-        const Vec2 offset = places[i].offset + free_origin();
-        pieces[i].page = places[i].page;
+        const Footprint& f = layout.footprints[i][place.orientation];
+        const Vec2 offset = place.offset + free_origin();
+        pieces[i].page = place.page;
         pieces[i].placement = {std::cos(f.angle), std::sin(f.angle), offset};
         labels.push_back(f.label + offset);
-        for (const Vec2& p : f.shape) used = std::max(used, p.y + offset.y);
-        while (pages.size() <= places[i].page) pages.push_back({.size = options.page});
     }
+    pages.assign(layout.pages, {.size = options.page});
     if (options.page.y == 0)
-        for (Page& page : pages) page.size.y = roll_length(used);
+        for (Page& page : pages) page.size.y = roll_length(layout.used + free_origin().y);
     return labels;
 }
 
@@ -380,8 +410,12 @@ void draw_pieces(const CutFilm& cut, const PrintSource& source, const SheetOptio
         add_label(map, piece.number, labels[i], up);
     }
     for (PrintedInk& ink : inks) sheet.inks.push_back({.name = {}, .colour = ink.colour, .mix = std::move(ink.mix)});
-    for (std::size_t i = 0; i < sheet.pages.size(); ++i)
-        add_marks(sheet.pages[i], {.title = options.title, .page = i % n + 1, .pages = n, .limit = options.max_strain});
+    for (std::size_t i = 0; i < sheet.pages.size(); ++i) {
+        FootText text{.title = options.title, .page = i % n + 1, .pages = n, .limit = options.max_strain};
+        for (const Piece& piece : sheet.pieces)
+            if (piece.page == i % n) text.strain = std::max(text.strain, piece.strain);
+        add_marks(sheet.pages[i], text);
+    }
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "decal/nest.h"
 #include "surfaces.h"
 
@@ -254,6 +256,23 @@ TEST(Outline, KeepsWideHolesOnly) {
     const auto small = Sheet100().outlines(ring(14 * kMm), {.bleed = 2 * kMm});
     ASSERT_EQ(small.size(), 1u);
     EXPECT_EQ(small[0].film.size(), 1u);
+}
+
+// A shape whose every corner points outwards has nothing that a closing fills. Grown by 2 mm each of these had an arc
+// that an inward offset turned into a spike as long as the radius.
+TEST(Offset, AClosingHasNoSpikes) {
+    const std::vector<std::pair<double, Ring>> shapes = {
+        {0.0020, {{0, 0}, {-3168, -120}, {-4043, -114}, {-7347, 63}, {117093, -115107}}},
+        {0.0022, {{0, 0}, {118066, -114533}, {119293, -114497}, {119843, -114495}, {123338, -114571}}},
+        {0.0025, {{0, 0}, {8290, -115163}, {12674, -115069}, {13101, -115067}, {19681, -115173}}}};
+    for (auto [radius, ring] : shapes) {
+        for (Vec2& p : ring) p *= 1e-7;
+        if (area_of(ring) < 0) std::reverse(ring.begin(), ring.end());
+        const Region closed = offset(offset({ring}, radius), -radius);
+        // 10 um of round corners, 5 um in and 5 um out, on sides that bend by 2 um.
+        EXPECT_TRUE(subtract(closed, offset({ring}, 2e-5)).empty()) << radius;
+        EXPECT_TRUE(subtract(offset({ring}, -2e-5), closed).empty()) << radius;
+    }
 }
 
 TEST(Nest, PiecesLieInsideThePageAndApart) {

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <string>
 
 #include "core/system/parallel.h"
+#include "decal/page_marks.h"
 #include "decal/stroke_font.h"
 #include "ink/colour/pigments.h"
 #include "surfaces.h"
@@ -291,6 +293,38 @@ TEST_F(SheetOfFormula, NumbersMarksAndScaleBarStandOnThePage) {
             scale = std::max(scale, glm::length(line.points[1] - line.points[0]));
     }
     EXPECT_NEAR(scale, 50 * kMm, 1e-9);
+}
+
+// A person who lays pieces reads them upright; on a page too narrow for that they are turned.
+TEST_F(SheetOfFormula, PiecesStandUprightWhereThatTakesNoMoreFilm) {
+    const mesh::TriangleMesh model =
+        test::grid_mesh(60, 60, false, false, [](double u, double v) { return Vec3(0.2 * u, 0.2 * v, 0); });
+    const auto slanted = [](const Vec3& p) {
+        const double along = 0.8 * (p.x - 0.1) + 0.6 * (p.y - 0.1), across = 0.8 * (p.y - 0.1) - 0.6 * (p.x - 0.1);
+        return std::abs(along) < 0.08 && std::abs(across) < 0.01;
+    };
+    const auto lean = [&](const Vec2& page) {
+        const Sheet made = sheet(model, slanted, {.page = page});
+        EXPECT_EQ(made.pieces.size(), 1u);
+        const Piece& piece = made.pieces[0];
+        return std::abs(piece.placement.c * piece.up.x - piece.placement.s * piece.up.y);
+    };
+    EXPECT_LT(lean({0.21, 0.297}), 1e-6);
+    EXPECT_GT(lean({0.1, 0.297}), 0.1);  // 143 mm wide as it stands
+}
+
+// On a map of strain the foot names the map, and is as whole on A3 as on a page with more room.
+TEST_F(SheetOfFormula, TheFootOfAStrainMapIsWhole) {
+    const mesh::TriangleMesh model = test::cylinder_part(kRadius, 2.5, 0.1, 120, 60);
+    const auto lines_of_foot = [&](double width) {
+        const Sheet made = sheet(model, dots_on_cylinder({{{0, 0.05}, 5 * kMm}}),
+                                 {.page = {width, 0.42}, .strain_map = true, .title = "a door of a car"});
+        return std::ranges::count_if(made.pages.at(1).lines, [](const Line& line) {
+            return line.role == Role::label && line.points[0].y < kPageMargin + kFootHeight - 1 * kMm;
+        });
+    };
+    EXPECT_GT(lines_of_foot(0.297), 20);
+    EXPECT_EQ(lines_of_foot(0.297), lines_of_foot(0.6));
 }
 
 // Same bits for any number of threads.

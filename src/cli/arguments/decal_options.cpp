@@ -108,7 +108,8 @@ CLI::App* add_decals(CLI::App& app, Decals& d) {
          "A4 (default), A3, WxH, roll (1370 mm wide) or roll:WIDTH")
         ->type_name("PAGE");
     s->add_option("--grain", d.print.grain,
-                  "free: pieces are turned to fill the page (default); up: all point up the page, along the grain of "
+                  "free: pieces are turned to fill the page, where that saves film (default); up: all point up the "
+                  "page, along the grain of "
                   "the film")
         ->check(CLI::IsMember({"free", "up"}));
     s->add_option("--dpi", d.print.dpi, "dots per inch of the print")->check(number_in(10, 4800));

@@ -22,13 +22,14 @@ namespace {
 
 constexpr int kWidth = 960, kHeight = 720;  // pixels
 constexpr double kSpacing = 1e-3;           // metres between points of a line on the model
-constexpr double kAround = 1.7;             // width of the view over the size of the piece
+constexpr double kFills = 0.34;             // of a picture's side by a square piece: the rest shows where it is
+constexpr double kMostFilled = 0.85;        // of a picture's side by a long one
 constexpr double kLeastView = 0.03;         // metres
 constexpr double kSteepest = 80;            // degrees of elevation
 constexpr double kFromAbove = 58;           // degrees of elevation, into a bowl
 constexpr double kHardlyMore = 1.05;        // what another view of all pieces must show over the one before
 constexpr int kEdgeSamples = 4;             // rays per pixel on edges: a quarter of a product picture's
-constexpr int kLightStep = 6;               // pixels between samples of light
+constexpr int kLightStep = 8;               // pixels between samples of light
 constexpr double kLevelArrow = 0.4;         // rise of an arrow over its length below which it points to the back
 
 /// A piece on the model.
@@ -120,6 +121,15 @@ PlacedPiece place_on_model(const mesh::TriangleMesh& mesh, const decal::PrintSur
     return placed;
 }
 
+/// Width and height of a piece over those of a picture.
+Vec2 size_in_picture(const PlacedPiece& piece, const render::Camera& camera) {
+    Vec2 lo(1e9), hi(-1e9);
+    for (const SurfacePath& path : piece.outline)
+        for (const Vec3& p : path.points)
+            if (const auto at = render::project(camera, p)) lo = glm::min(lo, Vec2(*at)), hi = glm::max(hi, Vec2(*at));
+    return glm::max(hi - lo, Vec2(0)) / Vec2(kWidth, kHeight);
+}
+
 /// The view straight onto a piece, as far as the camera goes; on level ones from the front.
 View view_of(const PlacedPiece& piece, const mesh::TriangleMesh& mesh) {
     View view;
@@ -136,8 +146,13 @@ View view_of(const PlacedPiece& piece, const mesh::TriangleMesh& mesh) {
     view.azimuth = to_back ? 0 : std::atan2(piece.normal.x, -piece.normal.y) / kDegree;
     const Vec3 target = piece.middle / kMillimetre;
     view.target_mm = {target.x, target.y, target.z};
-    const double aspect = static_cast<double>(kWidth) / kHeight;
-    view.zoom = mesh.bounds.diagonal() / std::max(kAround * aspect * piece.size, kLeastView);
+    // A first picture's camera says how large the piece is in one.
+    view.zoom = mesh.bounds.diagonal() / std::max(2 * piece.size, kLeastView);
+    const double closest = mesh.bounds.diagonal() / kLeastView;
+    const Vec2 size = size_in_picture(piece, camera_of(view, mesh));
+    if (size.x > 0 && size.y > 0)
+        view.zoom *= std::min({kFills / std::sqrt(size.x * size.y), kMostFilled / size.x, kMostFilled / size.y});
+    view.zoom = std::min(view.zoom, closest);
     return view;
 }
 
