@@ -240,6 +240,7 @@ Vec2 lean_of_make(const HolderOptions& options, double roll, const Vec2& ahead) 
 
 namespace {
 
+constexpr double kTouch = 1e-6;   // of the pressure: the tip is down from the first sample
 constexpr double kLean = 0.12;    // radians by which the holder tips ahead where it sets down pressed
 constexpr double kLeanTurns = 4;  // over so many `tip_lag_turn` of travel it comes upright
 constexpr double kAiming = 0.5;   // of `tip_lag_turn`: distance from the first sample at which its direction is taken
@@ -279,7 +280,6 @@ bool set_down(StrokeSamples& trace, const HolderOptions& options, const Vec2& ah
     constexpr double kFewest = 8, kMost = 100;
     constexpr double kPaceLength = 3e-3;  // metres over which the pace is taken
     constexpr int kPieces = 64;           // of the press, whose length is measured
-    constexpr double kTouch = 1e-6;       // of the pressure: the tip is down from the first sample
     const StrokeSample first = trace.samples.front();
     if (!(tip_lag_length(options.tip_lag, depth_of(options, first.pressure)) > 0)) return false;
     const double pace = first_pace(trace.samples, kPaceLength);
@@ -343,16 +343,64 @@ double angle_of(const Vec2& ahead) {
 constexpr double kLeastTrail = 0.02;  // of the tuft's length: what trails less is pressed straight down
 
 /// Direction of a hand that sets a dot: towards the side that the holder leans to; upright, of a wide ferrule y, of a
-/// round one to the right and down, as a right hand goes. Zero for a blade, which is led along its line, and for a
+/// round one to the right and down, as a right hand goes; of a blade, which is led along its line, x or −x. Zero for a
 /// sponge, which does not trail.
 Vec2 dot_direction(const StrokeSample& first, const HolderOptions& options) {
     const double trails = tip_lag_length(options.tip_lag, options.working_depth);
-    if (options.blade_landing > 0 || !(trails > kLeastTrail * options.tuft_length)) return Vec2{0};
+    if (!(trails > kLeastTrail * options.tuft_length)) return Vec2{0};
+    if (options.blade_landing > 0) {
+        const Vec2 along{std::cos(first.roll), -std::sin(first.roll)};
+        return glm::dot(first.tilt, along) < 0 ? -along : along;
+    }
     if (options.across || options.turned) {
         const Vec2 across = across_of(first.roll);
         return glm::dot(first.tilt, across) < 0 ? -across : across;
     }
     return glm::length(first.tilt) > kLeansNot ? glm::normalize(first.tilt) : Vec2(std::numbers::sqrt2 / 2);
+}
+
+constexpr double kCutsOfString = 6;  // pieces of its length, into which the path is cut where a string is slack
+constexpr double kLifted = 0.4;      // of the string's length: at a turn back the hair is in the air below it
+constexpr double kLeansOver = 0.9;   // of it: the hand begins to lean over to the other side
+
+StrokeSample between(const StrokeSample& a, const StrokeSample& b, double f) {
+    StrokeSample s = a;
+    s.time = std::lerp(a.time, b.time, f);
+    s.position = glm::mix(a.position, b.position, f);
+    s.pressure = std::lerp(a.pressure, b.pressure, f);
+    s.tilt = glm::mix(a.tilt, b.tilt, f);
+    s.roll = mix_roll(a.roll, b.roll, f);
+    return s;
+}
+
+/// Adds samples where the hand comes round: while its string, of length `tip_lag_turn`, is slack. `ahead`: as in
+/// `trace_direction`.
+StrokeSamples cut_turns(const StrokeSamples& trace, const HolderOptions& options, const Vec2& ahead) {
+    StrokeSamples out = trace;
+    out.samples.clear();
+    const double string = options.tip_lag_turn;
+    Vec2 before(trace.samples.front().position), dragged = before - string * ahead;
+    for (const StrokeSample& s : trace.samples) {
+        const Vec2 p(s.position), motion = p - before, taut = before - dragged;
+        const double gone = glm::length(motion);
+        const bool slack = glm::dot(taut, motion) < 0 || glm::length(taut) < (1 - 1e-9) * string;
+        // Within two strings of its length it is taut again.
+        const int n = slack ? static_cast<int>(std::ceil(kCutsOfString * std::min(gone / string, 2.0))) : 0;
+        const StrokeSample from = out.samples.empty() ? s : out.samples.back();
+        for (int i = 1; i <= n && i * string < kCutsOfString * gone; ++i)
+            out.samples.push_back(between(from, s, i * string / (kCutsOfString * gone)));
+        dragged = drag_string(dragged, before, p, string);
+        before = p;
+        out.samples.push_back(s);
+    }
+    return out;
+}
+
+/// Whether the hand lifts a brush where it turns back and sets it down to the other side: a wide ferrule. Hair that is
+/// pushed before the hand lies on ahead of it for centimetres, then falls along its row. The ink of that place is
+/// there.
+bool is_lifted_at_turns(const HolderOptions& options) {
+    return options.across || options.turned || options.blade_landing > 0;
 }
 
 /// Direction in which a trace sets out; zero of a dot, which does not leave its first place.
@@ -374,14 +422,22 @@ Vec2 initial_direction(std::span<const StrokeSample> samples, const HolderOption
 StrokeSamples lean_holder(StrokeSamples trace, const HolderOptions& options) {
     if (!(options.lean > 0) || !trace.flat || trace.samples.empty()) return trace;
     if (std::ranges::any_of(trace.samples, [](const StrokeSample& s) { return s.tilt != Vec2(0); })) return trace;
-    const double string = lean_string(options);
-    Vec2 before(trace.samples.front().position);
-    Vec2 dragged = before - string * initial_direction(trace.samples, options);
+    const double string = lean_string(options), turn = options.tip_lag_turn;
+    const Vec2 ahead = initial_direction(trace.samples, options);
+    const bool lifts = is_lifted_at_turns(options) && !is_dot(trace.samples, options);
+    if (lifts) trace = cut_turns(trace, options, ahead);
+    Vec2 before(trace.samples.front().position), dragged = before - string * ahead, led = before - turn * ahead;
     for (StrokeSample& s : trace.samples) {
         const Vec2 p(s.position);
         dragged = drag_string(dragged, before, p, string);
+        led = drag_string(led, before, p, turn);
         before = p;
-        s.tilt = lean_of_make(options, s.roll, (p - dragged) / string);
+        // Hair that is lifted is set down leaning to its other side.
+        const Vec2 over = (p - led) / turn;
+        const double taut = lifts ? glm::length(over) : 1;
+        if (taut < kLifted) dragged = p - string * over;
+        const double part = smooth_step((kLeansOver - taut) / (kLeansOver - kLifted));
+        s.tilt = lean_of_make(options, s.roll, glm::mix((p - dragged) / string, over, part));
     }
     return trace;
 }
@@ -393,6 +449,8 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     const Vec2 ahead = initial_direction(trace.samples, options);
     const bool dot = is_dot(trace.samples, options);
     const Vec2 off = dot && options.dot_place ? options.dot_place(trace) : Vec2{0};
+    const bool lifts = !dot && is_lifted_at_turns(options);
+    if (lifts) trace = cut_turns(trace, options, ahead);
     const bool pressed = set_down(trace, options, ahead, dot);
     set_down_plumb(trace, options);
     // Over a convex surface a blade's point meets ground that falls ahead of it, however softly it lands: it would
@@ -402,11 +460,21 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     Vec2 dragged = first - options.tip_lag_turn * ahead, before = first;
     FollowedTurn turn(options.tuft_length, trace.samples.front().roll - angle_of(ahead));
     BladeRoll blade(options.tip_lag_turn, trace.samples.front().roll);
+    const double turn_leans = kLeanTurns * options.tip_lag_turn;
+    double since_turn = 1e9;  // metres
     for (StrokeSample& s : trace.samples) {
         const Vec2 p(s.position);
         dragged = drag_string(dragged, before, p, options.tip_lag_turn);
-        const Vec2 towards = (p - dragged) / options.tip_lag_turn;
+        Vec2 towards = (p - dragged) / options.tip_lag_turn;
+        if (const double taut = glm::length(towards); lifts && taut < 1 - 1e-9) {
+            s.pressure *= smooth_step((taut - kLifted) / (1 - kLifted));
+            towards = taut > 1e-9 ? towards / taut : Vec2{0};
+            if (taut < kLifted) since_turn = 0;
+        }
         const double gone = glm::distance(p, before);
+        since_turn += gone;
+        if (since_turn < turn_leans && !(options.lean > kLean))
+            s.tilt += kLean * (1 - smooth_step(since_turn / turn_leans)) * towards;
         if (options.blade_landing > 0) {
             blade.follow(s.roll, gone);
             s.roll = blade.roll();

@@ -126,9 +126,10 @@ inline constexpr double kHoverTime = 0.05;  ///< seconds of the tip between the 
 /// Ahead is the direction of a point dragged behind the trace on a string of length `tip_lag_turn` (a tractrix), taut
 /// from the first touch in the initial direction of the trace. A dot is set as a stroke begins: the tip touches, and
 /// the hand goes on as it presses, towards the side that the holder leans to, or to the right and down; of a wide
-/// ferrule across its broad side. A blade and a sponge are pressed straight down. Then its middle lies where the trace
+/// ferrule across its broad side, of a blade along it. A sponge is pressed straight down. Then its middle lies where the trace
 /// was (`options.dot_place`), whichever way the surface leans. Pressed down plumb the hair would fall to any side.
-/// Where the path reverses, the tip lag passes through zero. A trace that begins pressed gets samples before its first
+/// Where the path reverses, the tip lag passes through zero. A wide ferrule is lifted there and set down to its other
+/// side, with the ink up to the place where the path turns. A trace that begins pressed gets samples before its first
 /// one, at the same place and earlier in time, whose pressure rises to the first; the holder moves at `kSetDownPace`
 /// times the trace's speed, so that the tip touches first and trails. It leans ahead by 0.12 rad meanwhile where a make
 /// that leans does not already tilt it ahead by more, and so does that of a blade at any landing, over `blade_landing`.
