@@ -382,6 +382,24 @@ TEST(Style, AMakeThatLeansLeansInTheOtherSegments) {
     EXPECT_NEAR(length(samples_of(straight, hand, pace), 50), length(own, 50), 1e-12);
 }
 
+// 0 is a lean that is stated.
+TEST(Style, AMakeThatLeansStandsUprightInAStrokeThatTheStyleWantsSo) {
+    stroke::WidthTables tables;
+    stroke::HolderOptions hold;
+    hold.lean = 0.4, hold.tuft_length = 0.02;
+    const BrushHand hand{tables.preset("goat-medium"), tables.of("goat-medium"), hold, 1e-4};
+    std::vector<Station> falling;
+    for (int i = 0; i <= 100; ++i) falling.push_back({{800, 800 - 8.0 * i}, 20});
+    const auto most = [&](const Pace& pace) {
+        double lean = 0;
+        for (const stroke::StrokeSample& s : stroke::lean_holder(samples_of(falling, hand, pace), hold).samples)
+            lean = std::max(lean, glm::length(s.tilt));
+        return lean;
+    };
+    ASSERT_GT(most({}), 0.3) << "as the make is held";
+    EXPECT_LT(most({.lean = {{'S', 0}}}), 1e-6);
+}
+
 // A style that states no lean holds the brush upright. 人: 撇, then 捺.
 TEST(Style, TheHolderLeansBackInTheSegmentsThatTheStyleNames) {
     const auto written = [](const std::string& lean) {

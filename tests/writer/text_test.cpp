@@ -52,6 +52,29 @@ TEST(Text, CharactersOfAFontAreStrokesWhereTheyAreFitted) {
     EXPECT_EQ(pen.kept_filled, 0u) << "none was to be strokes";
 }
 
+// 97 bars have more edges than lines are laid for. What is written has all its characters, or is refused by name. A
+// character without an area, as some fonts have for a space, is no fault.
+TEST(Text, ACharacterThatNoLinesFillIsNamed) {
+    const std::string file = testing::TempDir() + "/tuft_bars_" + std::to_string(getpid()) + ".ttf";
+    std::vector<FontRing> bars;
+    for (int k = 0; k < 97; ++k) bars.push_back(font_box(0, 40 * k, 3900, 40 * k + 20));
+    write_font(file, {{'B', bars}, {'I', {font_box(300, 0, 400, 700)}}, {'_', {font_box(0, 0, 0, 700)}}});
+    const auto entries = [&](const std::string& letters) {
+        Text text = TextReader().read({.text = letters, .glyphs = file});
+        text.layout.side = 0.05;
+        std::vector<stroke::JournalEntry> out;
+        append_lines(out, text, {}, {});
+        return out.size();
+    };
+    EXPECT_GT(entries("I_"), 0u);
+    try {
+        entries("IB");
+        FAIL() << "B is left out";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find(" B "), std::string::npos) << error.what();
+    }
+}
+
 // A text is read at each key: only the character that is new is taken apart, and it can be stopped.
 TEST(Text, ACharacterOfAFontIsTakenApartOnce) {
     const std::string font = small_font();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "brush/tuft/tuft.h"
 #include "brush/tuft/upright_hair.h"
@@ -111,7 +112,10 @@ void PlaneInk::copy_row(std::int64_t i, std::int64_t j, std::span<float> to) con
 }
 
 PlaneDrawing::PlaneDrawing(const brush::Preset& preset, const HolderOptions& hold, double step, double cell)
-    : hold_(hold), step_(step), tuft_(brush::make_tuft(preset)), fresh_(tuft_), ink_(cell) {}
+    : hold_(hold), step_(step), tuft_(brush::make_tuft(preset)), ink_(cell) {
+    fresh_.bend = tuft_;
+    kept_ = fresh_;
+}
 
 std::vector<brush::Pose> PlaneDrawing::poses_of(const StrokeSamples& trace) const {
     std::vector<brush::Pose> samples;
@@ -125,15 +129,37 @@ std::vector<brush::Pose> PlaneDrawing::poses_of(const StrokeSamples& trace) cons
     return resample(samples, {.step = step_, .lever = tuft_.preset.length});
 }
 
-const PlaneInk& PlaneDrawing::draw(const StrokeSamples& trace) {
+void PlaneDrawing::begin(const State& from) {
     ink_ = PlaneInk(ink_.cell());
-    static_cast<brush::TuftBend&>(tuft_) = fresh_;
-    before_.clear();
-    double before = 0;
-    for (bool first = true; const brush::Pose& pose : poses_of(trace)) {
-        add_stamp(pose, first ? 0 : pose.time - before);
-        before = pose.time, first = false;
+    static_cast<brush::TuftBend&>(tuft_) = from.bend;
+    before_ = from.before;
+    root_ = from.root, missed_ = from.missed;
+}
+
+PlaneDrawing::State PlaneDrawing::draw_on(const std::vector<brush::Pose>& poses, const State& from, double until) {
+    begin(from);
+    State at = from;
+    for (; at.poses < poses.size() && poses[at.poses].time <= until; ++at.poses) {
+        const brush::Pose& pose = poses[at.poses];
+        add_stamp(pose, at.poses == 0 ? 0 : pose.time - at.time);
+        at.time = pose.time;
     }
+    at.bend = tuft_;
+    at.before = before_, at.root = root_, at.missed = missed_;
+    return at;
+}
+
+const PlaneInk& PlaneDrawing::draw(const StrokeSamples& trace) {
+    draw_on(poses_of(trace), fresh_, std::numeric_limits<double>::infinity());
+    return ink_;
+}
+
+void PlaneDrawing::keep(const StrokeSamples& trace, double time) {
+    kept_ = draw_on(poses_of(trace), fresh_, time);
+}
+
+const PlaneInk& PlaneDrawing::draw_part(const StrokeSamples& trace, double until) {
+    draw_on(poses_of(trace), kept_, until);
     return ink_;
 }
 

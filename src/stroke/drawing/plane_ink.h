@@ -55,15 +55,30 @@ class PlaneDrawing {
     PlaneDrawing(const brush::Preset& preset, const HolderOptions& hold, double step, double cell);
     /// Returns the ink of a trace, until the next call.
     const PlaneInk& draw(const StrokeSamples& trace);
+    /// Bends the tuft along a trace up to a time (seconds) and keeps that state for `draw_part`.
+    void keep(const StrokeSamples& trace, double time);
+    /// Returns the ink of the part of a trace from the kept state on up to a time, until the next call. Precondition: up
+    /// to the time of the kept state the trace is the one that was kept.
+    const PlaneInk& draw_part(const StrokeSamples& trace, double until);
 
   private:
+    struct State {
+        brush::TuftBend bend;
+        Recycled<footprint::Trail> before;
+        Vec3 root{0};
+        int missed = 0;
+        std::size_t poses = 0;  // behind it
+        double time = 0;        // seconds, of the last of them
+    };
     std::vector<brush::Pose> poses_of(const StrokeSamples& trace) const;
+    void begin(const State& from);
+    State draw_on(const std::vector<brush::Pose>& poses, const State& from, double until);
     void add_stamp(const brush::Pose& pose, double dt);
 
     HolderOptions hold_;
     double step_;
     brush::Tuft tuft_;
-    brush::TuftBend fresh_;
+    State fresh_, kept_;
     PlaneInk ink_;
     Recycled<footprint::Trail> before_;  // of the pose before, of a tuft with several spines
     Vec3 root_{0};                       // metres, there

@@ -14,6 +14,7 @@ constexpr double kBlunt = 12;       // units of half width from which an end is 
 constexpr double kLiftTime = 0.03;  // seconds from the last ink to the free tip
 constexpr double kTouchReach = 16;  // units about the first station whose width bounds the touch
 constexpr int kTouchSamples = 9;
+constexpr double kUpright = 1e-9;  // radians: no lean that a hand can see
 
 /// Curvature at a station from its neighbours two stations away, 1/units.
 double curvature(std::span<const Station> s, std::size_t i) {
@@ -97,7 +98,11 @@ std::vector<Vec2> tilts_of(std::span<const Station> stations, std::span<const do
         own[i] = lean->second * Vec2(-d.x, d.y);
         named = true;
     }
-    return named ? blended(own, along, pace.ease) : none;
+    if (!named) return none;
+    std::vector<Vec2> tilts = blended(own, along, pace.ease);
+    // Upright all the way, and meant so: a make leans where no sample says otherwise (`stroke::lean_holder`).
+    if (hand.hold.lean > 0 && std::ranges::all_of(tilts, [](const Vec2& t) { return t == Vec2(0); })) tilts.front().x = kUpright;
+    return tilts;
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include "core/system/interrupt.h"
 #include "writer/fit/fairing.h"
 #include "writer/fit/ink_score.h"
+#include "writer/fit/knuckle_fit.h"
+#include "writer/fit/path.h"
 
 namespace tuft::writer {
 namespace {
@@ -67,20 +69,6 @@ std::vector<float> depths_of(const Cells& wanted) {
     return depth;
 }
 
-std::vector<double> lengths_of(const std::vector<Station>& s) {
-    std::vector<double> along{0};
-    for (std::size_t i = 1; i < s.size(); ++i)
-        along.push_back(along.back() + glm::distance(s[i].centre, s[i - 1].centre));
-    return along;
-}
-
-Vec2 direction_at(const std::vector<Station>& s, std::size_t i) {
-    const std::size_t a = i - std::min<std::size_t>(i, 1), b = std::min(s.size() - 1, i + 1);
-    const Vec2 d = s[b].centre - s[a].centre;
-    const double size = glm::length(d);
-    return size > 1e-9 ? d / size : Vec2(1, 0);
-}
-
 std::vector<double> smoothed(const std::vector<double>& v, const std::vector<double>& soft) {
     const int n = static_cast<int>(v.size());
     std::vector<double> out(v.size(), 0);
@@ -95,14 +83,6 @@ std::vector<double> smoothed(const std::vector<double>& v, const std::vector<dou
         out[static_cast<std::size_t>(i)] = sum / all;
     }
     return out;
-}
-
-std::size_t nearest_station(const std::vector<Station>& s, const Vec2& p) {
-    std::size_t best = 0;
-    double least = 1e300;
-    for (std::size_t i = 0; i < s.size(); ++i)
-        if (const Vec2 d = p - s[i].centre; glm::dot(d, d) < least) least = glm::dot(d, d), best = i;
-    return best;
 }
 
 /// How far ink and wanted area reach beyond an end, in a strip about its axis. A needle there has hardly an area.
@@ -355,6 +335,7 @@ FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& wh
             if (&manner == kManners || best.iou < options.weak) fit_from(*begin, first_try, manner);
     }
     fit_finely(best, target, whole, depths, hand, pace, options);
+    take_off_knuckles(best, {target, whole, depths}, hand, pace, options);
     return best;
 }
 

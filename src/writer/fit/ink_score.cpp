@@ -45,11 +45,21 @@ std::vector<EdgeTurn> wanted_edge_turns(const Cells& wanted) {
     return edge_turns(wanted, coverage_of(wanted), 0.5 * kKnuckle);
 }
 
-double sharpness_of(const FitTarget& target, std::span<const EdgeTurn> turns, std::span<const float> coverage) {
+std::vector<EdgeTurn> seen_knuckles(const FitTarget& target, std::span<const EdgeTurn> turns,
+                                    std::span<const float> coverage) {
+    std::vector<EdgeTurn> knuckles = knuckles_of(target.wanted, coverage, turns);
+    std::erase_if(knuckles, [&](const EdgeTurn& turn) { return is_under_another(target, turn.at); });
+    return knuckles;
+}
+
+double sharpness_of(std::span<const EdgeTurn> knuckles) {
     double sum = 0;
-    for (const EdgeTurn& turn : knuckles_of(target.wanted, coverage, turns))
-        if (!is_under_another(target, turn.at)) sum += std::min(std::abs(turn.curvature) / kKnuckle, kSharpest);
+    for (const EdgeTurn& turn : knuckles) sum += std::min(std::abs(turn.curvature) / kKnuckle, kSharpest);
     return sum;
+}
+
+double sharpness_of(const FitTarget& target, std::span<const EdgeTurn> turns, std::span<const float> coverage) {
+    return sharpness_of(seen_knuckles(target, turns, coverage));
 }
 
 }  // namespace tuft::writer

@@ -29,8 +29,15 @@ InkScore score_of(const FitTarget& target, std::span<const float> depths, std::s
 /// Returns the turns of an area by which the knuckles of ink on it are told.
 std::vector<EdgeTurn> wanted_edge_turns(const Cells& wanted);
 
-/// Returns Σ min(|curvature| / kKnuckle, 4) over the knuckles of ink, `wanted_edge_turns` given. Those under other
-/// strokes, where errors weigh less than 1, are not seen and do not count.
+/// Returns the knuckles of ink, `wanted_edge_turns` given, but for those under other strokes, where errors weigh less than
+/// 1 and are not seen.
+std::vector<EdgeTurn> seen_knuckles(const FitTarget& target, std::span<const EdgeTurn> turns,
+                                    std::span<const float> coverage);
+
+/// Returns Σ min(|curvature| / kKnuckle, 4) over knuckles.
+double sharpness_of(std::span<const EdgeTurn> knuckles);
+
+/// Returns that of the seen knuckles of ink.
 double sharpness_of(const FitTarget& target, std::span<const EdgeTurn> turns, std::span<const float> coverage);
 
 }  // namespace tuft::writer

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kMargin = 80;                 // units of cells around a stroke
 constexpr float kUnder = 0.25f;                // weight of an error under another stroke
-constexpr std::uint64_t kVersion = 22;         // of the fit
+constexpr std::uint64_t kVersion = 23;         // of the fit
 constexpr std::size_t kMostStations = 20'000;  // of a stroke
 constexpr double kMiddlePressure = 0.4;        // that draws the median width
 constexpr double kCoarse = 3;                  // median widths of a line at that pressure: the brush is too coarse
@@ -47,6 +47,13 @@ Message too_coarse(const std::string& brush, const stroke::LineWidths& widths, d
     return Message(
         "characters of {} mm are too small for {}, whose finest line is {} mm wide: it writes characters from {} mm on",
         mm(side), brush, mm(widths.least()), at_least(widths.least() * kSide / kBlot));
+}
+
+bool has_ink(const std::vector<Ring>& area) {
+    constexpr double kCell = 8;  // units: finer than a stem
+    Cells cells = cells_over(area, kCell, kCell);
+    fill(cells, area);
+    return cells.count() > 0;
 }
 
 std::uint64_t hash_of(const std::vector<Station>& s, std::uint64_t seed) {
@@ -270,6 +277,9 @@ std::vector<WrittenStroke> Writer::filled(const Glyph& glyph) const {
         }
         out.push_back(std::move(s));
     }
+    if (out.empty() && has_ink(glyph.area))
+        throw Error(Message("the outline of {} is too large or too intricate to be filled with a brush",
+                            utf8_of(glyph.code)));
     return out;
 }
 

@@ -93,7 +93,7 @@ struct TextHand {
 };
 
 /// Appends the strokes of a text in lines or columns, as flat entries without a placement, in one group with id 1.
-/// Frame: metres, y down. Throws `Cancelled` where `progress` returns false. Cost: about 0.2 s for each stroke that is
+/// Frame: metres, y down. Throws `Error` as `Writer::write`, `Cancelled` where `progress` returns false. Cost: about 0.2 s for each stroke that is
 /// not in the cache.
 void append_lines(std::vector<stroke::JournalEntry>& entries, const Text& text, const TextHand& hand,
                   const ProgressFn& progress);
