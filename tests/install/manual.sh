@@ -61,7 +61,7 @@ completes() {
   done
 }
 cd "$work"
-touch bowl.ply line.inkml brush.toml picture.png
+touch bowl.ply part.step line.inkml leaf.svg brush.toml picture.png
 mkdir folder
 while IFS='|' read -r words wanted; do
   # shellcheck disable=SC2086  # several words
@@ -77,8 +77,9 @@ tuft paint --brush go|goat-small goat-large !wolf-small
 tuft paint --brush |wolf-medium brush.toml !carbon !picture.png
 tuft paint --ink |carbon indigo !wolf-medium
 tuft paint --substrate |porcelain bisque
-tuft paint |bowl.ply folder !line.inkml !picture.png
-tuft paint bowl.ply --strokes |line.inkml folder !bowl.ply
+tuft paint |bowl.ply part.step folder !line.inkml !picture.png
+tuft paint bowl.ply --strokes |line.inkml leaf.svg folder !bowl.ply
+tuft write bowl.ply --curve |line.inkml folder !bowl.ply
 tuft paint bowl.ply --strokes line.inkml --export |folder !picture.png
 tuft paint bowl.ply --preview |picture.png !bowl.ply
 tuft layer x.tuft |add remove opacity !rod

@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <sstream>
+
 #include "core/error.h"
+#include "core/files/extension.h"
 #include "core/files/files.h"
+#include "core/manual/manual.h"
 #include "io/export/export.h"
 #include "sample_model.h"
 
@@ -40,6 +45,17 @@ TEST(ReadModel, FormatsAreRecognisedByContentThenByExtension) {
     EXPECT_THROW(read_model(folder / "missing.obj"), Error);
     EXPECT_EQ(metres_per_unit_of("a/m.GLB"), 1.0);
     EXPECT_EQ(metres_per_unit_of("m.obj"), std::nullopt);
+}
+
+TEST(ReadModel, ShellsCompleteTheNamesOfAllFilesThatAreRead) {
+    const std::vector<std::string> completed = file_extensions({.value = "FILE", .text = "mesh"});
+    for (const std::string& extension : completed) EXPECT_TRUE(is_model_file("m." + extension)) << extension;
+    std::istringstream formats(kModelFormats);  // each is also an extension
+    for (std::string word; formats >> word;) {
+        if (word == "and") continue;
+        std::erase(word, ',');
+        EXPECT_EQ(std::ranges::count(completed, lower_extension("m." + word).substr(1)), 1) << word;
+    }
 }
 
 }  // namespace

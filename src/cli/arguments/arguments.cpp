@@ -46,7 +46,8 @@ CLI::App* add_paint(CLI::App& app, Paint& paint) {
     auto* command = app.add_subcommand("paint", "paint recorded strokes onto a model, or go on with a project");
     allow_shipped(command->add_option("MODEL", paint.model, std::string("mesh (") + io::kModelFormats + ") or project"))
         ->required();
-    allow_shipped(command->add_option("--strokes", paint.strokes, "InkML files, painted in the order given"))
+    allow_shipped(command->add_option("--strokes", paint.strokes,
+                                      "stroke files (.inkml) and drawings (.svg), painted in the order given"))
         ->required();
     add_paint_options(command, paint);
     add_pointer_options(command, paint);

@@ -313,7 +313,7 @@ void add_write_options(CLI::App* w, Write& write) {
                   "--place) or curve (along --curve)")
         ->check(
             CLI::IsMember(std::vector<std::string>(writer::kDirectionNames.begin(), writer::kDirectionNames.end())));
-    w->add_option("--curve", write.curve, "line on the model that the text runs along: the first of a stroke file");
+    w->add_option("--curve", write.curve, "what the text runs along: the first line of a file (.inkml or .svg)");
     w->add_option("--spacing", write.spacing, "between characters, in parts of their width (default: the style's)")
         ->check(number_in(0.1, 10.0));
     w->add_option("--line-spacing", write.line_spacing, "between lines, in parts of the size (default: the style's)")

@@ -146,23 +146,14 @@ std::string man_page(const Manual& manual, const ManualCommand& command) {
 }
 
 std::vector<std::string> file_extensions(const ManualOption& option) {
+    // All that `io::read_model` reads.
+    const std::vector<std::string> models{"ply", "obj",  "stl",  "off", "glb",  "gltf", "fbx",  "dae", "3mf",
+                                          "x3d", "x3dv", "vrml", "wrl", "step", "stp",  "iges", "igs"};
     const std::vector<std::pair<std::string, std::vector<std::string>>> formats{
-        {"mesh", {"ply", "obj", "stl", "off", "glb", "gltf"}},
-        {"project", {"tuft"}},
-        {"inkml", {"inkml"}},
-        {"svg", {"svg"}},
-        {"glb", {"glb"}},
-        {"gltf", {"gltf"}},
-        {"obj", {"obj"}},
-        {"ply", {"ply"}},
-        {"stl", {"stl"}},
-        {"off", {"off"}},
-        {"toml", {"toml"}},
-        {"csv", {"csv"}},
-        {"png", {"png"}},
-        {"exr", {"exr"}},
-        {"tuft", {"tuft"}},
-        {"model", {"ply", "obj", "stl", "off", "glb", "gltf"}}};
+        {"mesh", models}, {"project", {"tuft"}}, {"inkml", {"inkml"}}, {"svg", {"svg"}},
+        {"glb", {"glb"}}, {"gltf", {"gltf"}},    {"obj", {"obj"}},     {"ply", {"ply"}},
+        {"stl", {"stl"}}, {"off", {"off"}},      {"toml", {"toml"}},   {"csv", {"csv"}},
+        {"png", {"png"}}, {"exr", {"exr"}},      {"tuft", {"tuft"}},   {"model", models}};
     std::vector<std::string> found;
     if (option.value != "FILE" && !(option.names.empty() && option.choices.empty())) return found;
     std::string word;
