@@ -1,4 +1,4 @@
-// A chart of all pigments as they look in films of several thicknesses, mixed, and over each
+// A chart of pigments as they look in films of several thicknesses, mixed, and over each
 // other: matte on white, matte on black, and under the glaze of porcelain.
 #include <cstdio>
 #include <string>

@@ -81,7 +81,7 @@ TEST(Layers, AHiddenOneAndOneWithoutOpacityContributeNothing) {
     EXPECT_EQ(picture(p), both);
 }
 
-// What a change alters is told, so that only that is drawn anew.
+// What a change alters is reported, so that only that is drawn anew.
 TEST(Layers, AChangeOfTheAppearanceIsDirtyWhereTheLayerHasInk) {
     Document p(model());
     p.paint(on(kFirstLayer, -3));

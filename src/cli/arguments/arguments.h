@@ -74,7 +74,7 @@ struct StrokeChoice {
     std::string layer;                  ///< name; empty: the stroke file's, else the first one
     std::string mask;                   ///< name; empty: the stroke file's, else none
     bool erases = false;                ///< all strokes erase
-    std::string spine = "rod";          ///< rod | table
+    std::string spine = "rod";          ///< a word of brush::kSpineWords
     std::string footprint = "surface";  ///< surface | plane
     std::string contact = "exact";      ///< exact | vertices
     std::string dip = "each";           ///< each | persistent | endless

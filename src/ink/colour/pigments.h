@@ -94,7 +94,7 @@ struct Wetting {
     float diffusion = 1e-8f;        ///< D of the wet film, m²/s per film unit of water
     float threshold = 0.1f;         ///< w_c: film units of water that do not flow
     float edge = 0.5f;              ///< 0–1: pinning of the rim of a wet spot, which darkens its edge as it dries
-    float evaporation = 1.0f / 60;  ///< film units of water per second at full wetness
+    float evaporation = 1.0f / 60;  ///< film units of water per second, however wet it is
 };
 
 /// A substrate.
