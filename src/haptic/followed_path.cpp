@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "core/cubic.h"
 #include "core/error.h"
 
 namespace tuft::haptic {
@@ -100,10 +101,9 @@ HandPath followed_path(std::vector<TimedPlace> places) {
         const auto i = static_cast<std::size_t>(after - p.begin()) - 1;
         const TimedPlace &a = p[i], &b = p[i + 1];
         const double h = b.time - a.time, u = (time - a.time) / h;
-        const Vec3 va = h * slope(p, i), vb = h * slope(p, i + 1), d = b.position - a.position;
-        const Vec3 c2 = 3.0 * d - 2.0 * va - vb, c3 = va + vb - 2.0 * d;
-        return HandTarget{.position = a.position + u * (va + u * (c2 + u * c3)),
-                          .velocity = (va + u * (2.0 * c2 + 3.0 * u * c3)) / h,
+        const Vec3 va = slope(p, i), vb = slope(p, i + 1);
+        return HandTarget{.position = hermite(a.position, b.position, va, vb, h, u),
+                          .velocity = hermite_slope(a.position, b.position, va, vb, h, u),
                           .rotation = glm::slerp(a.rotation, b.rotation, u),
                           .buttons = a.buttons};
     };

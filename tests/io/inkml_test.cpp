@@ -168,12 +168,6 @@ TEST(Inkml, DefaultPressureFollowsTheSpeedNotTheNumberOfSamples) {
     EXPECT_NEAR(often[500].pressure, 0.65, 1e-9) << "a hand that rests presses 1.3 times as much";
 }
 
-TEST(Inkml, FlatTracesScaleTogether) {
-    const auto t = parse("<trace>0 0,1000 0</trace><trace>3000 500,4000 0</trace>", {.flat_width = 0.1});
-    EXPECT_NEAR(t[1].samples[1].position.x - t[0].samples[0].position.x, 0.1, 1e-12);
-    EXPECT_NEAR(t[1].samples[0].position.y - t[0].samples[0].position.y, 0.0125, 1e-12);
-}
-
 TEST(Inkml, PressureWithoutARangeIsScaledByTheLargest) {
     const std::string f = "<traceFormat><channel name='X'/><channel name='Y'/><channel name='P'/></traceFormat>";
     EXPECT_NEAR(parse(f + "<trace>0 0 0.25</trace>")[0].samples[0].pressure, 0.25, 1e-12);

@@ -379,7 +379,6 @@ class Reader : InkmlText {
     // --- what needs the whole file ---------------------------------------------
 
     void finish() {
-        if (options_.flat_width > 0) scale_to_width();
         double largest = 1;  // of pressures without a range
         for (const Draft& d : drafts_)
             if (!d.pressure_ranged)
@@ -397,20 +396,6 @@ class Reader : InkmlText {
                 throw Error(path, d.line, error.message());
             }
         }
-    }
-
-    void scale_to_width() {
-        Box box;
-        for (const Draft& d : drafts_)
-            if (d.trace.flat)
-                for (const StrokeSample& s : d.trace.samples) box.add(s.position);
-        const double width = std::max(box.size().x, 0.05 * box.size().y);
-        if (box.empty() || !(width > 0)) return;
-        const Vec3 middle = box.centre();
-        for (Draft& d : drafts_)
-            if (d.trace.flat)
-                for (StrokeSample& s : d.trace.samples)
-                    s.position = (options_.flat_width / width) * (s.position - middle);
     }
 
     void set_times(Draft& d) const {

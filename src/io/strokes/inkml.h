@@ -16,7 +16,6 @@ namespace tuft::io {
 /// Options of `read_inkml`.
 struct InkmlOptions {
     double metres_per_unit = 1e-3;  ///< of X, Y, Z where the file declares neither unit nor resolution
-    double flat_width = 0;          ///< metres: all flat traces are scaled together to this width; 0: not scaled
     double full_force = 1;          ///< newtons of F equal to pressure 1 where the file declares no maximum
     double pen_speed = 0.06;        ///< m/s, for traces without a time channel or sample rate
     double flat_pressure = 0.5;     ///< 0–1, mean of the default pressure, for traces without P and F
