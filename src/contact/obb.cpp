@@ -7,7 +7,7 @@
 namespace tuft::contact {
 
 Mat3 principal_axes(const Mat3& symmetric) {
-    // Cyclic Jacobi rotations (Golub and Van Loan, section 8.5); a 3 × 3 matrix needs few sweeps.
+    // Cyclic Jacobi rotations ([Golub2013] 8.5); a 3 × 3 matrix needs few sweeps.
     Mat3 a = symmetric, v(1.0);
     for (int sweep = 0; sweep < 16; ++sweep) {
         const double off = std::abs(a[0][1]) + std::abs(a[0][2]) + std::abs(a[1][2]);

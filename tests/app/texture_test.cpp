@@ -45,7 +45,7 @@ TEST(Texture, RefreshedTilesAreWhatTheWholeWouldBe) {
 }
 
 // Beside a bright ground an eye sees differences of light, and little of those near black.
-TEST(Texture, MarksBlackInkByAsMuchLightAsABareGround) {
+TEST(Texture, MarksBlackInkByAsMuchLightAsABareSubstrate) {
     const stroke::Model model = test::shipped_model("bowl.ply", 256);
     std::uint32_t t = 0;
     while (!atlas::texel_ref(model.texels, t % 256, t / 256).valid()) ++t;

@@ -149,8 +149,8 @@ TEST(CoupledRods, StickingRowIsStifferAcrossItsBroadSide) {
 }
 
 /// A wet film of work W zips two rods of stiffness B each from the gap d of their roots. Their curvature at the root is
-/// κ = √(W'/B), W' the work less that of the contact, and they stay dry over √(3d/κ) = (9 B d²/W')^(1/4) (Bico et al.
-/// 2004, Py et al. 2007).
+/// κ = √(W'/B), W' the work less that of the contact, and they stay dry over √(3d/κ) = (9 B d²/W')^(1/4) [Bico2004,
+/// Py2007].
 TEST(CoupledRods, WetFilmZipsTwoRodsFromAGap) {
     constexpr int kSegments = 120, kFine = 96;
     constexpr double kFineLength = 0.42, stiffness = 0.5, film = 0.2, touching = 0.02;

@@ -200,7 +200,7 @@ TEST(Lateral, DraggedNodesStickOrSlipWithTheLeastOfStoredAndLost) {
         for (int other = 0; other < 20; ++other) {
             Recycled<double> v = out.shift;
             for (std::size_t i = 1; i < v.size(); ++i) v[i] += random.uniform(-1, 1) * std::pow(10.0, -5 - other % 3);
-            // HolderPose nodes are held by springs 1e8 times as stiff.
+            // Fixed nodes are held by springs 1e8 times as stiff.
             EXPECT_GT(dragged(at, springs, f, v), least * (1 - 1e-7)) << trial;
         }
     }

@@ -195,7 +195,7 @@ TEST(FollowedPath, AHandFollowsARecordingWithinTheSagOfItsSpring) {
     EXPECT_LT(sag, (1 + 2 * (limits.friction + inertia)) / hand.stiffness);
 }
 
-TEST(FollowedPath, ATableOfTimesAndPlacesIsAWay) {
+TEST(FollowedPath, ATableOfTimesAndPlacesIsAPath) {
     const std::string file = testing::TempDir() + "/tuft_table_" + std::to_string(::getpid()) + ".csv";
     std::ofstream(file) << "t,x,y,z\n5,0,0,0.05\n6,0.01,0,0.05\n7,0.03,0,0.05\n";
     const HandPath path = followed_path(read_followed_path(file));

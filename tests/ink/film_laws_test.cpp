@@ -239,7 +239,7 @@ TEST(FilmLaws, ADropOnPaperSpreadsAsItsVolumeAndTheRootOfTimeSay) {
     EXPECT_NEAR(std::log(radii[3] / radii[1]) / std::log(3.0), 1.0 / 3, 0.02);
 }
 
-// Still air over a spot of radius R at 20 °C takes 1.30 π R D c (1 − H) (Hu and Larson 2002, thin drops) with D = 24.2
+// Still air over a spot of radius R at 20 °C takes 1.30 π R D c (1 − H) ([HuLarson2002], thin drops) with D = 24.2
 // mm²/s and c = 17.3 g/m³. The film has a rate by area and one by length of the rim: at a humidity of one half they
 // come to that for lines and dots of 2 mm.
 TEST(FilmLaws, DotsDryAsFastAsInStillAir) {

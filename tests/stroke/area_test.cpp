@@ -104,7 +104,7 @@ TEST(Area, DetailKeepsItsShapeDownToThreeTexels) {
     }
 }
 
-TEST(Area, TwoThatShareAnEdgeShowNoGroundBetweenThem) {
+TEST(Area, TwoThatShareAnEdgeShowNoSubstrateBetweenThem) {
     // A ground, and two halves of it that meet along an edge: a slanting one, and upright ones at several places
     // between cells and texels.
     const double texel = model().texels.texel_size;

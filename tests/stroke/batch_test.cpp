@@ -56,7 +56,7 @@ std::uint64_t one_by_one(const std::vector<JournalEntry>& entries, std::size_t n
     return p.layers().hash();
 }
 
-TEST_F(Batch, WatchedStrokesHaveTheSameBitsAndAreSeenAlongTheirWay) {
+TEST_F(Batch, WatchedStrokesHaveTheSameBitsAndAreSeenAlongTheirPath) {
     const std::vector<JournalEntry> entries = crossing_strokes();
     const std::uint64_t expected = one_by_one(entries, entries.size());
     set_thread_count(3);

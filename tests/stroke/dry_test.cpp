@@ -364,7 +364,7 @@ TEST(DryBrush, PaintingDriesTheTuft) {
     EXPECT_LT(wet, 0.7);
 }
 
-TEST(DryBrush, FastHairIsDrierAndRoughGroundShowsItsGrain) {
+TEST(DryBrush, FastHairIsDrierAndARoughSubstrateShowsItsGrain) {
     const Model model = sheet();
     const double slow = covered(DryStroke(model, 0.4, 8, {}, drag(8, 0.02))),
                  fast = covered(DryStroke(model, 0.4, 8, {}, drag(8, 0.5)));

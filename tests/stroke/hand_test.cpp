@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPixel = 1.5e-4;  // metres: a 15 cm model on 1000 pixels
 
-// Jitter of one pixel's standard deviation on x and y (Box and Muller 1958).
+// Jitter of one pixel's standard deviation on x and y [BoxMuller1958].
 Vec3 jitter(Random& random) {
     const double r = std::sqrt(-2 * std::log(1 - random.uniform()));
     const double a = 2 * std::numbers::pi * random.uniform();

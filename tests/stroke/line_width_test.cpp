@@ -88,7 +88,7 @@ PaintStroke circle(const std::string& brush, double width, double radius) {
 }
 
 TEST(LineWidth, ATiltAgainstTheMotionDoesNotTurnTheTuftOver) {
-    // BaseColour that is not quite as the hand takes it: three and six degrees tip ahead, and to the sides.
+    // A surface that is not quite as the hand takes it: three and six degrees tip ahead, and to the sides.
     for (const char* brush : {"wolf-medium*0.168", "goat-medium", "mixed-small"})
         for (const Vec2& lean : {Vec2{-0.05, 0}, Vec2{-0.1, 0}, Vec2{-0.05, 0.05}, Vec2{0, -0.05}}) {
             const double width = brush == std::string("goat-medium") ? 0.002 : 0.0012;
@@ -209,7 +209,7 @@ TEST(LineWidth, BrushesComeInTheSizeThatDrawsIt) {
         EXPECT_GT(sized.at(0.7), width) << name;
         EXPECT_LT(sized.at(0.1), width) << name;
     }
-    // HolderPose to the sizes that there are.
+    // Limited to the sizes that there are.
     EXPECT_LT(brush::sized_name(brush_for_width("goat-medium", medium, 1e-5)).factor, 1.25 * brush::kLeastSize);
     EXPECT_GT(brush::sized_name(brush_for_width("goat-medium", medium, 10)).factor, brush::kMostSize / 1.25);
 }

@@ -66,7 +66,7 @@ TEST(WetEdge, AtArmsLengthNothingChanges) {
 
 // Strands and loads vary the film by some hundredths on any ground; the grain of others than glaze adds its share to
 // that, 0.35 ζ / (ζ + 18 µm). On 12 mm of line lie some 2,000 independent heights; texels of 0.06 mm take the tops off.
-TEST(WetEdge, ShowsTheLoadOfItsHairAndTheGrainOfItsGround) {
+TEST(WetEdge, ShowsTheLoadOfItsHairAndTheGrainOfItsSubstrate) {
     const Model model = sheet();
     const Mark porcelain = paint_line(model, "porcelain");
     EXPECT_GT(porcelain.deviation, 0.02);

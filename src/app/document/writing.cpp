@@ -300,7 +300,7 @@ std::vector<std::vector<PreviewPoint>> preview_lines(const mesh::SurfaceQuery& q
     std::size_t all = 0;
     for (const std::vector<Vec2>& line : lines) all += line.size();
     const std::size_t step = std::max<std::size_t>(1, all / most);
-    // All in one trace: what is found out about the ground is found once.
+    // All in one trace: what is found out about the surface is found once.
     stroke::StrokeSamples thin{.placement = placement};
     std::vector<std::size_t> starts;
     for (const std::vector<Vec2>& line : lines) {

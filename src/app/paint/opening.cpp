@@ -96,7 +96,7 @@ Inspected inspect_file(const fs::path& path, const io::CadReading& cad, const Pr
     return out;
 }
 
-// Strokes of a former project, its presets and ground, on the new model.
+// Strokes of a former project, its presets and substrate, on the new model.
 void copy_strokes(const fs::path& former, bool follow, PaintWork& work, const ProgressFn& progress) {
     const io::Project project = io::Project::open(former, {.access = io::Access::read, .progress = progress});
     work.document->use(ink::parse_substrate(project.model().substrate, former.string()));

@@ -135,7 +135,7 @@ void scale_bar(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) 
     const auto width = static_cast<float>(length * 1e-3 / pixel);
     const float right = static_cast<float>(s.view.area.x + s.view.area.width) - s.ui.px(20),
                 y = static_cast<float>(s.view.area.y + s.view.area.height) - s.ui.px(20);
-    // Light with a dark rim: to be read on any ground.
+    // Light with a dark rim: to be read on any colour.
     constexpr unsigned rim = IM_COL32(24, 24, 26, 210), light = IM_COL32(245, 245, 245, 255);
     for (const auto& [colour, more] : {std::pair{rim, 1.0f}, std::pair{light, 0.0f}}) {
         const float w = s.ui.px(2 + 2 * more), end = s.ui.px(4 + more);

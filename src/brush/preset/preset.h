@@ -31,7 +31,7 @@ enum class SpineMethod {
 inline constexpr const char* kSpineWords[] = {"rod", "table", "macro", "chain", "truss"};
 
 /// Constants of one tuft. Lengths in metres, stiffness in SI. TOML files use millimetres, cubic centimetres and
-/// plain SI (see `load_preset`). Symbols as in the variable stiffness brush, B(ξ) = B0 e^{αξ} (1+βξ)³ and M_e(ξ) =
+/// plain SI (see `load_preset`). Symbols as in [Huang2018], B(ξ) = B0 e^{αξ} (1+βξ)³ and M_e(ξ) =
 /// M_e0 e^{γξ} (1+βξ)², with ξ from root (0) to tip (1).
 struct Preset {
     std::string name;  ///< "wolf-medium"

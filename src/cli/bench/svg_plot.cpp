@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kWidth = 560, kHeight = 330, kLeft = 70, kRight = 20, kTop = 56, kBottom = 52;  // pixels
 constexpr double kBarLine = 26, kBarLeft = 190, kBarRight = 80;
-// Distinct for people who see red and green alike, and by lightness (Okabe and Ito 2008).
+// Distinct for people who see red and green alike, and by lightness [Okabe2008].
 constexpr std::array kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#000000"};
 
 std::string head(double width, double height, const std::string& title) {

@@ -54,7 +54,7 @@ Cut cut_of(const brush::Section& s, const Frame& frame, const brush::ContactPlan
     return cut;
 }
 
-/// Slope of a monotone cubic at a node that keeps to the flatter side (Fritsch and Butland 1984).
+/// Slope of a monotone cubic at a node that keeps to the flatter side [Fritsch1984].
 double cautious_slope(double before, double after, double h_before, double h_after) {
     if (!(before * after > 0)) return 0;
     const double w1 = 2 * h_after + h_before, w2 = h_after + 2 * h_before;

@@ -18,7 +18,7 @@ constexpr double kEnd = 0.7;                      // B: of the spacing
 constexpr double kOfFlank = 0.05;                 // (n·t)² up to which an edge is all flank
 constexpr double kCoarse = 0.1e-3;                // metres: D of coarser hair
 constexpr double kGrain = 0.35, kFilm = 10e-6;    // of the length of the grain; metres of ink that drown it
-constexpr double kHeld = 0.3;                     // part of hair's edge that ink on a smooth ground keeps
+constexpr double kHeld = 0.3;                     // part of hair's edge that ink on a smooth substrate keeps
 constexpr double kUnseen = 0.2;       // texels: w D from which the edge's rms is 0.04 at flanks, 0.08 at ends
 constexpr double kLeastGrain = 4e-6;  // metres: G below which the grain is left out
 // Cells, half a texel each, over the detail's size between which it vanishes.

@@ -88,7 +88,7 @@ struct Reach {
     double side = 0;   ///< fraction of the width, from the sections' +x side (> 0) or −x side (< 0), −1–1; 0: all
 };
 
-/// largest level of a dip; more drips off before the tuft reaches the surface
+/// Largest level of a dip; more drips off before the tuft reaches the surface
 inline constexpr double kMostLevel = 1.5;
 
 /// Depth and level of a dip.
@@ -155,7 +155,7 @@ struct Drain {
 /// Viscosity of the ink: 2 mPa s. Does not change the tuft.
 double drained_volume(const Reservoir& tuft, const Drain& drain, double dt);
 
-/// Returns the ink of one stamp by the source paper's recurrence (variable stiffness brush), Q_i = η k_i (Z −
+/// Returns the ink of one stamp by the recurrence of [Huang2018], Q_i = η k_i (Z −
 /// Σ_{j<i} Q_j), with `remaining` = Z − ΣQ and k_i = |M_i| / M_max.
 double paper_quantity(double eta, double moment_factor, double remaining);
 

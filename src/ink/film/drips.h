@@ -10,8 +10,8 @@
 namespace tuft::ink::wet {
 
 /// Simulates the beads. A bead is a spherical cap of radius R and contact angle θ = `bead_angle`, volume π θ R³ /
-/// 4. Contact lines hold it while its weight along the slope is below σ 2R (cos θ_r − cos θ_a) ≈ σ R θ² (Furmidge
-/// 1962), that is for
+/// 4. Contact lines hold it while its weight along the slope is below σ 2R (cos θ_r − cos θ_a) ≈ σ R θ²
+/// [Furmidge1962], that is for
 ///
 ///     R < R_c = 2 l √(θ / (π sin α)),   l² = σ / ρ g
 ///

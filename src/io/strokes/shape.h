@@ -31,8 +31,8 @@ class Shape {
     /// Whether a point lies in the shape.
     bool contains(const Vec2& p) const;
 
-    /// Returns the shape without points that lie within `tolerance` metres of the simplified ring (Douglas and Peucker
-    /// 1973).
+    /// Returns the shape without points that lie within `tolerance` metres of the simplified ring
+    /// [Douglas1973].
     Shape simplified(double tolerance) const;
 
     /// Returns the part more than `d` metres inside. `tolerance`: largest error of the distance, metres.

@@ -9,7 +9,7 @@
 #include "mesh/read/soup_builder.h"
 #include "mesh/read/text_cursor.h"
 
-// OFF as the Geomview manual (Phillips et al. 1993) has it: [ST][C][N][4][n]OFF [BINARY].
+// OFF as the Geomview manual [Phillips1993] has it: [ST][C][N][4][n]OFF [BINARY].
 namespace tuft::mesh {
 namespace {
 

@@ -30,8 +30,8 @@ class SurfaceTopology {
     std::size_t n_border_loops() const;
     /// [3 n_triangles] as in `TriangleMesh`.
     std::vector<std::uint32_t> neighbours() const;
-    /// [3 n_triangles] unit. Mean of the face normals round a vertex, weighted by the angles at the vertex (Thürmer
-    /// and Wüthrich 1998). The mean is taken over each run of triangles without an edge sharper than `crease_angle`
+    /// [3 n_triangles] unit. Mean of the face normals round a vertex, weighted by the angles at the vertex
+    /// [Thurmer1998]. The mean is taken over each run of triangles without an edge sharper than `crease_angle`
     /// radians.
     std::vector<Vec3f> corner_normals(double crease_angle) const;
 

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kTremble = 1.0 / 32;  // of the levelled path: a hand that trembles within it rests
 
-/// Height of the ground ahead over the plane at a place; 0 where there is none within as much.
+/// Height of the surface ahead over the plane at a place; 0 where there is none within as much.
 double rise(const mesh::SurfaceQuery& query, const Vec3& place, const Vec3& ahead, const Vec3& normal, double steady) {
     const double most = glm::length(ahead);
     const auto hit = exact_ray(query, place + ahead + most * normal, -normal, 2 * most);
@@ -58,7 +58,7 @@ HolderOptions holder_options(const brush::Preset& preset) {
 
 HolderOptions holder_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh) {
     HolderOptions options = holder_options(preset);
-    options.steady = std::min(drape_radius(mesh), 0.4 * preset.length);  // a fine tuft feels finer ground
+    options.steady = std::min(drape_radius(mesh), 0.4 * preset.length);  // a fine tuft follows finer detail
     return options;
 }
 

@@ -14,7 +14,7 @@ namespace {
 using mesh::SurfaceQuery;
 
 constexpr int kRings = 3;        // of the hexagonal pattern of samples
-constexpr double kFit = 0.7;     // part of the pattern that must lie on ground for its curvature
+constexpr double kFit = 0.7;     // part of the pattern that must lie on the surface for its curvature
 constexpr double kLeast = 0.35;  // and for its slope
 // `level_at`: mismatch in parts of its radius, and of a disk half as wide in parts of the wider one's
 constexpr double kTrusted = 0.005, kDoubted = 0.02, kSame = 0.75, kBetter = 0.25;
@@ -66,7 +66,7 @@ double rest_of(const Height& h, const std::array<double, N>& c) {
 }
 
 /// Least sum of pseudo-Huber distances, which narrow grooves hardly bend; convex, so that the
-/// fit changes as little as the ground does. N = 6: with curvature; 3: without.
+/// fit changes as little as the surface does. N = 6: with curvature; 3: without.
 template <int N>
 bool fit(const std::vector<Height>& heights, double below, std::array<double, N>& c) {
     constexpr double kNarrow = 0.01;  // radii: differences of height that count fully

@@ -453,7 +453,7 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     if (lifts) trace = cut_turns(trace, options, ahead);
     const bool pressed = set_down(trace, options, ahead, dot);
     set_down_plumb(trace, options);
-    // Over a convex surface a blade's point meets ground that falls ahead of it, however softly it lands: it would
+    // Over a convex surface a blade's point meets a surface that falls ahead of it, however softly it lands: it would
     // slide on ahead of the hand and fall to its side.
     const bool leans = options.lean > kLean && glm::dot(trace.samples.front().tilt, ahead) > kLean;
     if ((pressed || dot || options.blade_landing > 0) && ahead != Vec2(0) && !leans) lean_ahead(trace, options, ahead);

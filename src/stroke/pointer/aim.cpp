@@ -14,7 +14,7 @@ namespace {
 constexpr double kShallow = 0.2;             // of how far gaps are felt: what is less deep is relief, and followed
 constexpr double kBent = 0.5;                // of it: how far two sides of a gap may lie out of one plane
 constexpr int kPairs = 12;                   // of rays round the aim
-constexpr std::size_t kAgreeing = 3;         // of them that must lie on ground
+constexpr std::size_t kAgreeing = 3;         // of them that must lie on the surface
 constexpr double kWall = 0.25, kLip = 0.55;  // radians from the mean normal: of a wall beside a lip at most, of a lip
 
 Vec3 facing(const mesh::SurfacePoint& p, const Aim& aim) {
@@ -68,7 +68,7 @@ std::optional<AimedSurface> LevelledView::find_gap(const Aim& aim, double centre
         other.ray.origin -= side;
         const auto a = aim_at(surface_, one), b = aim_at(surface_, other);
         if (!a || !b) continue;
-        // On one ground, flat or evenly bent: each lies as far out of the other's plane. Else it is a rim or a step.
+        // On one surface, flat or evenly bent: each lies as far out of the other's plane. Else it is a rim or a step.
         const Vec3 na = facing(*a, aim), nb = facing(*b, aim), chord = b->position - a->position;
         const double out_a = glm::dot(na, chord), out_b = glm::dot(nb, chord);
         if (std::abs(out_a + out_b) < kShallow * reach_ && std::abs(out_a) < kBent * reach_)

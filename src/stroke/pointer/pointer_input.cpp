@@ -39,7 +39,7 @@ constexpr double kFlickLift = 0.75;  // of its pressure; the rest goes at the en
 // pressure's path, and is pressed down over this part of the tuft's length.
 constexpr double kLightly = 0.2, kOverAnEdge = 0.08;
 constexpr double kSlowestCatchUp = 0.02, kCatchUpSpacing = 2.5e-4;  // m/s; metres between poses
-constexpr double kAhead = 0.5;  // of the radius that a holder levels: how far ahead the ground is looked at
+constexpr double kAhead = 0.5;  // of the radius that a holder levels: how far ahead the surface is looked at
 
 /// `path` projected onto the plane of the levelled surface: by the part `start` (0–1) along the line of sight, else
 /// along the normal. A stroke that begins on a lip goes far along the surface's normal before it is on the wall. Its

@@ -27,8 +27,8 @@ Glyph copied_glyph(const Cells& ink, const Skeleton& skeleton, const StrokeOrder
 Glyph strokes_of_area(const Glyph& glyph);
 inline constexpr double kWidestCopied = 4 * kSide;  ///< units
 
-/// Colours of strokes that lie beside each other, in turn, sRGB as 0xrrggbb; told apart without red and green (Okabe
-/// and Ito 2008).
+/// Colours of strokes that lie beside each other, in turn, sRGB as 0xrrggbb; told apart without red and green
+/// [Okabe2008].
 inline constexpr std::array<std::uint32_t, 6> kStrokeColours{0x0072b2, 0xd55e00, 0x009e73,
                                                              0xcc79a7, 0xe69f00, 0x56b4e9};
 

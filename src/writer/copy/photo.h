@@ -23,8 +23,8 @@ struct PictureInk {
 ///
 /// Light is the ratio of a pixel to the paper about it, so shading falls out. The paper is the 90th percentile of a
 /// block, the largest within three blocks; then the mean of what is no ink, filled from the neighbours where a block
-/// has none. The threshold is Otsu's (1979). The writing is lighter than its
-/// ground, as on a rubbing, where deviations from the middle light about a place are skewed to the light. Parts that
+/// has none. The threshold is that of [Otsu1979]. Writing counts as lighter than
+/// its paper, as on a rubbing, where deviations from the middle light about a place are skewed to the light. Parts that
 /// run along more than a tenth of the border are no ink. Specks below a third and holes below a sixth of the square of
 /// the stroke's width are removed, and steps of one cell by majority. Transparent pixels are white. Throws `Error` with
 /// `source` where the picture is smaller than 16 pixels or shows no ink. Cost: linear in the pixels.

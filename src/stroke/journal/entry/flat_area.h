@@ -69,7 +69,7 @@ struct FlatArea {
     /// (surface/even_lines.h). Empty: a shape of its own.
     std::vector<std::vector<Vec2>> lines = {};
     /// Closed rings (nonzero): what later areas of the drawing cover beside an edge that they share with this one. The
-    /// area reaches a texel under them, as printers trap: their edges then show no ground.
+    /// area reaches a texel under them, as printers trap: their edges then show no substrate.
     std::vector<std::vector<Vec2>> under = {};
     Placement placement;
     bool placed = false;  ///< the file gives a placement

@@ -27,11 +27,11 @@ TEST(PasteUnderAWash, WhatComesLooseFollowsArchardsLaw) {
 
 /// Paste with furrows 100 µm deep across x, dry height 5 µm a film unit, and ink with water over a
 /// disc of 2.5 mm.
-struct BaseColour : Wet {
+struct PasteBed : Wet {
     std::vector<double> white;  ///< film units, as laid
     double had[3]{};            ///< paste, ink, liquid
 
-    explicit BaseColour(int charts = 1, double loose = 0.8) : Wet(testing::sheet(8e-3, charts, 160.0 / charts)) {
+    explicit PasteBed(int charts = 1, double loose = 0.8) : Wet(testing::sheet(8e-3, charts, 160.0 / charts)) {
         Pigment thick = load_ink("titanium-white").parts[0].pigment;
         thick.height = 5e-6f;
         canvas.set_pigment(0, thick);
@@ -57,7 +57,7 @@ struct BaseColour : Wet {
 };
 
 TEST(PasteUnderAWash, BeddingMovesNothingAndLeavesOfItWhatCameLoose) {
-    BaseColour g;
+    PasteBed g;
     std::size_t i = 0, bedded = 0;
     g.each([&](std::uint32_t slot, int t, const Vec3&) {
         const double all = g.amount(slot, t), was = g.white[i++];
@@ -75,7 +75,7 @@ TEST(PasteUnderAWash, LiquidRunsOverItAndItStands) {
     for (const int charts : {1, 2})
         for (int i = 0; i < 2; ++i) {
             set_thread_count(i ? 3 : 1);
-            BaseColour g(charts);
+            PasteBed g(charts);
             g.run(20);
             hashes[i] = g.canvas.hash();
             if (i) {
@@ -98,7 +98,7 @@ TEST(PasteUnderAWash, LiquidRunsOverItAndItStands) {
                 }
                 flooded += glm::length(at) > 2.8e-3;
                 if (glm::length(at) > 2e-3) return;
-                const bool low = BaseColour::ridge(at.x)<0.2, high = BaseColour::ridge(at.x)> 0.8;
+                const bool low = PasteBed::ridge(at.x)<0.2, high = PasteBed::ridge(at.x)> 0.8;
                 (low ? furrows : ridges) += low || high ? g.water(slot, t) : 0;
                 n_furrows += low, n_ridges += high;
             });
