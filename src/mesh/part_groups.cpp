@@ -94,7 +94,7 @@ PartGroups group_parts(std::span<const ScenePart> parts) {
         groups.of_part.push_back(index.get(part, name, node, n_groups));
         if (groups.of_part.back() != n_groups) continue;
         std::string unlike = cut(name, kMaxPartNameBytes);
-        for (int& n = same_name[name]; !taken.insert(unlike).second;) {
+        for (int& n = same_name[unlike]; !taken.insert(unlike).second;) {
             const std::string number = " " + std::to_string(n++ + 2);
             unlike = cut(name, kMaxPartNameBytes - number.size()) + number;
         }

@@ -74,6 +74,33 @@ TEST(Decimate, GroupsAndUvsEndWhereTheyDid) {
     EXPECT_NEAR(left, 12 * 40, 1e-3);
 }
 
+// The walls of a plate 0.2 mm thick collapse at 0.5 mm; what is left lies back to back and went as a fin. A flat body,
+// closed by two diagonals, went by itself.
+TEST(Decimate, ThinClosedPartsStay) {
+    for (const double thick : {0.0, 0.2}) {
+        PolygonSoup soup = make_torus(60, 30);
+        const auto n = static_cast<std::uint32_t>(soup.points.size());
+        for (const double z : {0.0, thick})
+            for (const Vec2& p : {Vec2(60, 0), Vec2(80, 0), Vec2(80, 20), Vec2(60, 20)}) soup.points.emplace_back(p, z);
+        const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+            add_polygon(soup, {n + a, n + b, n + c});
+        };
+        add(0, 2, 1), add(0, 3, 2), add(4, 5, 7), add(5, 6, 7);
+        for (std::uint32_t k = 0; thick > 0 && k < 4; ++k) {
+            const std::uint32_t next = (k + 1) % 4;
+            add(k, next, next + 4), add(k, next + 4, k + 4);
+        }
+        const TriangleMesh full = build_surface(soup, kMetres).mesh;
+        for (const DecimateOptions& how : {DecimateOptions{.error = 0.5}, DecimateOptions{.n_triangles = 1000}}) {
+            const PolygonSoup copy = decimate(full, how);
+            double corner = 0;
+            for (const Vec3& p : copy.points) corner = std::max(corner, p.x + p.y);
+            EXPECT_NEAR(corner, 100, 1e-5) << thick << ' ' << how.error;
+            EXPECT_LT(copy.n_polygons(), how.n_triangles > 0 ? how.n_triangles + 1 : 700);
+        }
+    }
+}
+
 TEST(Decimate, SameMeshSameBitsAndNoLimitIsRefused) {
     const TriangleMesh full = build_surface(make_torus(60, 30), kMetres).mesh;
     const PolygonSoup a = decimate(full, {.n_triangles = 500}), b = decimate(full, {.n_triangles = 500});

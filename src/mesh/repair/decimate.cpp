@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cfloat>
+#include <map>
+#include <numeric>
 #include <span>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -103,24 +106,100 @@ void drop_fins(const Wedges& wedges, std::vector<std::uint32_t>& corners) {
     corners.resize(kept);
 }
 
+/// Which connected part a vertex is in, by the smallest of its vertices.
+std::vector<std::uint32_t> parts_of(const Wedges& wedges, std::size_t n_vertices) {
+    std::vector<std::uint32_t> parent(n_vertices);
+    std::iota(parent.begin(), parent.end(), 0u);
+    const auto root = [&](std::uint32_t v) {
+        while (parent[v] != v) v = parent[v] = parent[parent[v]];
+        return v;
+    };
+    for (std::size_t c = 0; c < wedges.corners.size(); ++c) {
+        const std::uint32_t a = root(wedges.vertex[wedges.corners[c]]),
+                            b = root(wedges.vertex[wedges.corners[c - c % 3]]);
+        parent[std::max(a, b)] = std::min(a, b);
+    }
+    for (std::uint32_t v = 0; v < n_vertices; ++v) parent[v] = root(v);
+    return parent;
+}
+
+/// Collapses edges of some triangles of a mesh.
+class Simplifier {
+  public:
+    Simplifier(const TriangleMesh& mesh, const Wedges& wedges) : wedges_(wedges) {
+        positions_.reserve(wedges.vertex.size());
+        for (const std::uint32_t vertex : wedges.vertex) positions_.push_back(mesh.positions[vertex]);
+    }
+
+    /// The corners that are left: of at most `n_triangles`, or where the next collapse moves the surface by more than
+    /// `error` metres.
+    std::vector<std::uint32_t> operator()(const std::vector<std::uint32_t>& corners, std::size_t n_triangles,
+                                          double error) const {
+        const float scale = meshopt_simplifyScale(&positions_[0].x, positions_.size(), sizeof(Vec3f));
+        const float most = error > 0 ? static_cast<float>(error) / scale : FLT_MAX;
+        std::vector<std::uint32_t> left(corners.size());
+        left.resize(meshopt_simplify(left.data(), corners.data(), corners.size(), &positions_[0].x, positions_.size(),
+                                     sizeof(Vec3f), 3 * std::min(n_triangles, corners.size() / 3), most, 0, nullptr));
+        drop_fins(wedges_, left);
+        return left;
+    }
+
+    Box box_of(const std::vector<std::uint32_t>& corners) const {
+        Box box;
+        for (const std::uint32_t corner : corners) box.add(Vec3(positions_[corner]));
+        return box;
+    }
+
+  private:
+    const Wedges& wedges_;
+    std::vector<Vec3f> positions_;  // of wedges
+};
+
+/// Connected parts of which nothing is left though they are larger than `least`, each with fewer triangles where it has
+/// any then; largest first. A thin plate becomes two sides back to back when its walls collapse, and these go as fins.
+std::vector<std::vector<std::uint32_t>> lost_parts(const TriangleMesh& mesh, const Wedges& wedges,
+                                                   const Simplifier& simplify, const std::vector<std::uint32_t>& left,
+                                                   double least) {
+    constexpr double kOfSize = 0.01;  // of a part: what may move where no distance is given
+    constexpr int kTries = 6;
+    const std::vector<std::uint32_t> part = parts_of(wedges, mesh.n_vertices());
+    std::vector<std::uint8_t> there(mesh.n_vertices(), 0);
+    for (const std::uint32_t corner : left) there[part[wedges.vertex[corner]]] = 1;
+    std::map<std::uint32_t, std::vector<std::uint32_t>> lost;
+    for (std::size_t c = 0; c < wedges.corners.size(); ++c)
+        if (const std::uint32_t p = part[wedges.vertex[wedges.corners[c]]]; !there[p])
+            lost[p].push_back(wedges.corners[c]);
+    std::vector<std::pair<double, std::vector<std::uint32_t>>> parts;
+    for (auto& [first, corners] : lost) {
+        const double size = simplify.box_of(corners).diagonal();
+        if (size <= 2 * least) continue;
+        double error = least > 0 ? 0.25 * least : kOfSize * size;
+        std::vector<std::uint32_t> own;
+        for (int i = 0; i < kTries && own.empty(); ++i, error *= 0.25) own = simplify(corners, 1, error);
+        parts.emplace_back(size, own.empty() ? std::move(corners) : std::move(own));
+    }
+    std::stable_sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<std::vector<std::uint32_t>> out;
+    for (auto& [size, corners] : parts) out.push_back(std::move(corners));
+    return out;
+}
+
 }  // namespace
 
 PolygonSoup decimate(const TriangleMesh& mesh, const DecimateOptions& options) {
     if (options.n_triangles == 0 && !(options.error > 0))
         throw Error("a number of triangles or a distance must say how far to decimate");
     const Wedges wedges = wedges_of(mesh);
-    std::vector<Vec3f> positions;
-    positions.reserve(wedges.vertex.size());
-    for (const std::uint32_t vertex : wedges.vertex) positions.push_back(mesh.positions[vertex]);
-    const float scale = meshopt_simplifyScale(&positions[0].x, positions.size(), sizeof(Vec3f));
-    const float error = options.error > 0 ? static_cast<float>(options.error) / scale : FLT_MAX;
-    const std::size_t most = 3 * std::min(options.n_triangles, mesh.n_triangles());
-    std::vector<std::uint32_t> corners(wedges.corners.size());
-    const std::size_t left =
-        meshopt_simplify(corners.data(), wedges.corners.data(), wedges.corners.size(), &positions[0].x,
-                         positions.size(), sizeof(Vec3f), most, error, 0, nullptr);
-    corners.resize(left);
-    drop_fins(wedges, corners);
+    const Simplifier simplify(mesh, wedges);
+    const std::size_t most = std::min(options.n_triangles, mesh.n_triangles());
+    std::vector<std::uint32_t> corners = simplify(wedges.corners, most, options.error);
+    // Lost parts come back as far as half of the triangles that are wanted, the largest first.
+    std::vector<std::uint32_t> back;
+    for (const std::vector<std::uint32_t>& part : lost_parts(mesh, wedges, simplify, corners, options.error))
+        if (most == 0 || 2 * (back.size() + part.size()) <= 3 * most) back.insert(back.end(), part.begin(), part.end());
+    if (most > 0 && corners.size() + back.size() > 3 * most)
+        corners = simplify(wedges.corners, most - back.size() / 3, options.error);
+    corners.insert(corners.end(), back.begin(), back.end());
     if (corners.empty()) throw Error("nothing is left of the mesh at this distance");
     return soup_of(mesh, wedges, corners);
 }

@@ -97,8 +97,9 @@ class PartMatch {
     static std::vector<std::uint32_t> groups_of(const std::vector<GroupPart>& parts,
                                                 const std::vector<std::size_t>& members) {
         std::vector<std::uint32_t> groups;
+        std::set<std::uint32_t> known;
         for (const std::size_t i : members)
-            if (std::ranges::find(groups, parts[i].group) == groups.end()) groups.push_back(parts[i].group);
+            if (known.insert(parts[i].group).second) groups.push_back(parts[i].group);
         return groups;
     }
 
@@ -108,11 +109,13 @@ class PartMatch {
             const auto same = is.find(names);
             if (same == is.end()) continue;
             const std::vector<std::uint32_t> before = groups_of(was_, members), now = groups_of(is_, same->second);
+            std::map<std::uint32_t, std::size_t> place;  // in `before`
+            for (std::size_t i = 0; i < before.size(); ++i) place[before[i]] = i;
             for (std::size_t k = 0; k < members.size(); ++k) {
                 std::vector<std::uint32_t>& found = found_[members[k]];
                 if (before.size() > 1) {
-                    const auto at = std::ranges::find(before, was_[members[k]].group) - before.begin();
-                    if (static_cast<std::size_t>(at) < now.size()) found = {now[static_cast<std::size_t>(at)]};
+                    const std::size_t at = place.at(was_[members[k]].group);
+                    if (at < now.size()) found = {now[at]};
                     continue;
                 }
                 found = now;
@@ -345,11 +348,12 @@ class RenamedStates {
 /// Returns whether the mask has a group of today.
 bool rename(std::vector<std::string>& groups, const NewNames& names, const std::set<std::string>& today) {
     std::vector<std::string> all, there;
+    std::set<std::string> listed;
     for (const std::string& name : groups) {
         const auto known = names.find(name);
         const std::set<std::string> now = known == names.end() ? std::set{name} : known->second;
         for (const std::string& to : now) {
-            if (std::ranges::find(all, to) != all.end()) continue;
+            if (!listed.insert(to).second) continue;
             all.push_back(to);
             if (today.contains(to)) there.push_back(to);
         }

@@ -64,11 +64,11 @@ std::vector<Coverage> texels_of(const std::vector<std::uint8_t>& chosen, const M
 
 MaskTexels by_group(const Mask& mask, const Model& model) {
     const mesh::TriangleMesh& mesh = *model.mesh;
+    std::map<std::string_view, std::size_t> group_of;  // the first of a name
+    for (std::size_t i = 0; i < mesh.group_names.size(); ++i) group_of.try_emplace(mesh.group_names[i], i);
     std::vector<std::uint8_t> wanted(mesh.group_names.size(), 0);
-    for (const std::string& name : mask.groups) {
-        const auto at = std::find(mesh.group_names.begin(), mesh.group_names.end(), name);
-        if (at != mesh.group_names.end()) wanted[static_cast<std::size_t>(at - mesh.group_names.begin())] = 1;
-    }
+    for (const std::string& name : mask.groups)
+        if (const auto at = group_of.find(name); at != group_of.end()) wanted[at->second] = 1;
     std::vector<std::uint8_t> chosen(mesh.n_triangles(), 0);
     for (std::size_t i = 0; i < mesh.triangle_groups.size(); ++i) chosen[i] = wanted[mesh.triangle_groups[i]];
     const std::vector<Coverage> in = texels_of(chosen, model);
@@ -244,9 +244,9 @@ MaskTexels evaluate_one(const Mask& mask, const Parts& done, const Model& model)
 
 void check_groups(const Mask& mask, const mesh::TriangleMesh& mesh) {
     if (mask.kind != MaskKind::group) return;
+    const std::set<std::string_view> names(mesh.group_names.begin(), mesh.group_names.end());
     for (const std::string& name : mask.groups) {
-        const bool known = std::ranges::find(mesh.group_names, name) != mesh.group_names.end();
-        if (known && !mesh.triangle_groups.empty()) continue;
+        if (names.contains(name) && !mesh.triangle_groups.empty()) continue;
         const std::string near = nearest_name(name, mesh.group_names);
         throw Error(Message("the mesh has no group '{}'{}", name, did_you_mean(near)));
     }
