@@ -496,6 +496,22 @@ TEST(FollowNames, OfTwoPartsThatAreOneAreSaid) {
     EXPECT_EQ(follow(former, revised, {"Tyre"}).notes, 0u);
 }
 
+// The model was exported again onto one page.
+TEST(FollowNames, OfPagesThatBecameOneAreItsPart) {
+    const mesh::TriangleMesh former =
+        file_of({{"Hood", "decorated.1001"}, {"Tyre", "Rubber"}, {"Hood", "decorated.1002"}});
+    ASSERT_EQ(former.group_names, (Names{"Hood", "Tyre", "Hood 2"}));
+    const mesh::TriangleMesh revised = file_of({{"Hood", "decorated"}, {"Tyre", "Rubber"}});
+    const Followed one = follow(former, revised, {"Hood 2"});
+    EXPECT_EQ(one.mask, (Names{"Hood"}));
+    EXPECT_EQ(one.former, (Names{"Hood", "Tyre", "Hood"}));
+    EXPECT_EQ(one.notes, 1u);
+    EXPECT_EQ(follow(former, revised, {"Hood"}).mask, (Names{"Hood"}));
+    // Two objects of one name today: which of them the page went to is not known.
+    const mesh::TriangleMesh two = file_of({{"Hood", "decorated"}, {"Tyre", "Rubber"}, {"Hood", "decorated"}});
+    EXPECT_EQ(follow(former, two, {"Hood 2"}).former[1], "Tyre");
+}
+
 // A project of a time when the material of one node named its part.
 TEST(FollowNames, OfMaterialsAreThoseOfTheirNodes) {
     const Objects car{{"Body", "Paint"}, {"Windscreen", "Glass"}};

@@ -22,6 +22,7 @@ namespace {
 
 constexpr int kWidth = 960, kHeight = 720;  // pixels
 constexpr double kSpacing = 1e-3;           // metres between points of a line on the model
+constexpr double kBridged = 0.08;           // metres that a line may leave its panel for
 constexpr double kFills = 0.34;             // of a picture's side by a square piece: the rest shows where it is
 constexpr double kMostFilled = 0.85;        // of a picture's side by a long one
 constexpr double kLeastView = 0.03;         // metres
@@ -44,22 +45,33 @@ struct PlacedPiece {
 
 class PieceOnModel {
   public:
-    PieceOnModel(const mesh::TriangleMesh& mesh, const decal::SurfaceLocator& surface)
-        : mesh_(mesh), surface_(surface) {}
+    PieceOnModel(const mesh::SurfaceQuery& query, const decal::SurfaceLocator& surface)
+        : query_(query), mesh_(query.mesh()), surface_(surface) {}
 
-    /// The points of a line of the panel's plane, in parts where it leaves the surface.
+    /// The points of a line of the panel's plane, in parts where it leaves the surface for long. Where it leaves the
+    /// panel for a little, on a bend whose film ends before the cut line does, it goes straight over the model.
     std::vector<SurfacePath> lift(const std::vector<Vec2>& line) const {
         std::vector<SurfacePath> paths(1);
+        double off = 0;  // metres since the line left the panel
         for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-            const int n = std::max(1, static_cast<int>(std::ceil(glm::length(line[i + 1] - line[i]) / kSpacing)));
+            const double length = glm::length(line[i + 1] - line[i]);
+            const int n = std::max(1, static_cast<int>(std::ceil(length / kSpacing)));
             for (int k = i == 0 ? 0 : 1; k <= n; ++k) {
-                const Vec2 p = line[i] + (static_cast<double>(k) / n) * (line[i + 1] - line[i]);
-                if (const auto at = surface_.locate(p)) {
-                    paths.back().points.push_back(decal::point_at(mesh_, at->triangle, at->weights));
-                    paths.back().normals.push_back(mesh::face_normal(mesh_, at->triangle));
-                } else if (!paths.back().points.empty()) {
-                    paths.emplace_back();
+                const auto at = surface_.locate(line[i] + (static_cast<double>(k) / n) * (line[i + 1] - line[i]));
+                if (!at) {
+                    off += length / n;
+                    continue;
                 }
+                const Vec3 point = decal::point_at(mesh_, at->triangle, at->weights);
+                if (off > 0 && !paths.back().points.empty()) {
+                    if (off < kBridged)
+                        bridge(paths.back(), point);
+                    else
+                        paths.emplace_back();
+                }
+                off = 0;
+                paths.back().points.push_back(point);
+                paths.back().normals.push_back(mesh::face_normal(mesh_, at->triangle));
             }
         }
         std::erase_if(paths, [](const SurfacePath& path) { return path.points.size() < 2; });
@@ -67,6 +79,17 @@ class PieceOnModel {
     }
 
   private:
+    void bridge(SurfacePath& path, const Vec3& to) const {
+        const Vec3 from = path.points.back();
+        const int n = static_cast<int>(std::ceil(glm::length(to - from) / kSpacing));
+        for (int k = 1; k < n; ++k)
+            if (const auto on = query_.closest_point(from + (static_cast<double>(k) / n) * (to - from))) {
+                path.points.push_back(on->position);
+                path.normals.push_back(mesh::face_normal(mesh_, on->triangle));
+            }
+    }
+
+    const mesh::SurfaceQuery& query_;
     const mesh::TriangleMesh& mesh_;
     const decal::SurfaceLocator& surface_;
 };
@@ -86,9 +109,10 @@ Vec2 middle_of(const decal::PrintSurface& surface, const decal::Region& film) {
     return best;
 }
 
-PlacedPiece place_on_model(const mesh::TriangleMesh& mesh, const decal::PrintSurface& surface,
+PlacedPiece place_on_model(const mesh::SurfaceQuery& query, const decal::PrintSurface& surface,
                            const decal::SurfaceLocator& locator, const decal::Piece& piece) {
-    const PieceOnModel on(mesh, locator);
+    const mesh::TriangleMesh& mesh = query.mesh();
+    const PieceOnModel on(query, locator);
     PlacedPiece placed;
     placed.number = piece.number;
     Box box;
@@ -275,7 +299,7 @@ std::vector<fs::path> write_placing_guide(const fs::path& folder, const GuideReq
     for (const decal::Piece& piece : request.sheet.pieces) {
         const decal::PrintSurface& surface = request.sheet.surfaces[piece.surface];
         const auto at = locators.try_emplace(piece.surface, surface).first;
-        pieces.push_back(place_on_model(mesh, surface, at->second, piece));
+        pieces.push_back(place_on_model(*request.project.model.query, surface, at->second, piece));
     }
     std::error_code ec;
     fs::create_directory(folder, ec);

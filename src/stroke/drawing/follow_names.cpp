@@ -73,6 +73,7 @@ class PartMatch {
         const auto object = [](const GroupPart& part) { return part.object; };
         const auto material = [](const GroupPart& part) { return part.material; };
         match_equal();
+        match_pages();
         match_rest(object, object);
         // Groups of a file without a scene are materials, and a material may be called as another node is.
         if (!known_ && has_nodes(revised)) match_rest(material, material);
@@ -123,6 +124,24 @@ class PartMatch {
                 const std::uint32_t own = is_[same->second[k]].group;
                 std::rotate(found.begin(), std::ranges::find(found, own), found.end());
             }
+        }
+        take();
+    }
+
+    /// Former pages of an exported object whose decorated part is one today, on pages of other numbers or on one.
+    void match_pages() {
+        const std::string decorated = mesh::kDecoratedMaterial;
+        const auto is_glass = [](const std::string& material) {
+            return material.find(mesh::kGlassSuffix) != std::string::npos;
+        };
+        std::map<std::pair<std::string, bool>, std::set<std::uint32_t>> now;  // by object and glass
+        for (const GroupPart& part : is_)
+            if (part.material == decorated || part.material.starts_with(decorated + "."))
+                now[{part.object, is_glass(part.material)}].insert(part.group);
+        for (std::size_t i = 0; i < was_.size(); ++i) {
+            if (!found_[i].empty() || was_[i].object.empty() || mesh::decorated_page(was_[i].material) == 0) continue;
+            const auto at = now.find({was_[i].object, is_glass(was_[i].material)});
+            if (at != now.end() && at->second.size() == 1) found_[i] = {*at->second.begin()};
         }
         take();
     }
