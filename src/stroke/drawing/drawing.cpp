@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
@@ -27,14 +28,31 @@ bool has_width(const PaintStroke& s) {
     return s.trace.flat && !s.trace.pressed && s.trace.line_width > 0 && s.settings.pressure == PressureFrom::none;
 }
 
-double film_of(const BrushFit& fit, const std::string& ink) {
-    if (fit.film) return fit.film(ink);
-    try {
-        return ink::load_ink(ink).film * ink::kFilmUnit;
-    } catch (const Error&) {
-        return ink::Ink{}.film * ink::kFilmUnit;  // of a project
+/// Films of full brushes of inks, each looked up once: to read an ink takes as long as to paint a short line.
+class Films {
+  public:
+    explicit Films(const BrushFit& fit) : fit_(fit) {}
+
+    /// Metres.
+    double of(const std::string& ink) {
+        const auto [at, is_new] = films_.try_emplace(ink, 0.0);
+        if (is_new) at->second = find(ink);
+        return at->second;
     }
-}
+
+  private:
+    double find(const std::string& ink) const {
+        if (fit_.film) return fit_.film(ink);
+        try {
+            return ink::load_ink(ink).film * ink::kFilmUnit;
+        } catch (const Error&) {
+            return ink::Ink{}.film * ink::kFilmUnit;  // of a project
+        }
+    }
+
+    const BrushFit& fit_;
+    std::unordered_map<std::string, double> films_;
+};
 
 Placement turned(const Vec3& origin, const Vec3& normal, const Vec3& right, double turn) {
     const Vec3 down = glm::cross(right, normal);
@@ -162,7 +180,7 @@ namespace {
 /// The brush that a stroke is painted with, in the size that fits it. `placed`: it is part of a drawing that has been
 /// placed with `scale` and is `extent` metres large now.
 std::string sized_brush(const PaintStroke& s, bool placed, double scale, double extent, const BrushFit& fit,
-                        WidthTables& widths) {
+                        WidthTables& widths, Films& films) {
     std::string sized = s.brush;
     if (sized.empty() && !fit.otherwise.empty())
         sized = fit.otherwise;
@@ -180,7 +198,7 @@ std::string sized_brush(const PaintStroke& s, bool placed, double scale, double 
     const double length = length_of(s.trace),
                  speed = length / std::max(samples.back().time - samples.front().time, 1e-9);
     return brush_for_line(brush::sized_name(sized).base, widths, s.trace.line_width, s.settings.endless ? 0 : length,
-                          film_of(fit, s.ink), speed);
+                          films.of(s.ink), speed);
 }
 
 }  // namespace
@@ -224,12 +242,13 @@ void choose_brushes(std::vector<JournalEntry>& entries, std::span<StrokeSamples*
                     double extent, const BrushFit& fit, WidthTables& widths) {
     // What is done with a brush before a stroke is done with the brush of that stroke.
     const std::unordered_set<const StrokeSamples*> among(drawing.begin(), drawing.end());
+    Films films(fit);
     std::string own, sized;
     for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry) {
         PaintStroke* s = entry->as<PaintStroke>();
         if (s && s->layer != kPaletteLayer) {
             own = s->brush;
-            s->brush = sized = sized_brush(*s, among.contains(&s->trace), scale, extent, fit, widths);
+            s->brush = sized = sized_brush(*s, among.contains(&s->trace), scale, extent, fit, widths, films);
         } else if (brush_of(*entry) == own) {
             set_brush(*entry, sized);
         }
@@ -243,13 +262,14 @@ void redip_long_lines(std::vector<JournalEntry>& entries, const BrushFit& fit, W
     constexpr double kMargin = 1.1;  // of both ends that lie over each other
     std::vector<JournalEntry> out;
     out.reserve(entries.size());
+    Films films(fit);
     for (JournalEntry& entry : entries) {
         PaintStroke* s = entry.as<PaintStroke>();
         if (!s || !has_width(*s) || s->settings.dip != DipMode::each || s->settings.endless || s->erases()) {
             out.push_back(std::move(entry));
             continue;
         }
-        const double width = s->trace.line_width, film = film_of(fit, s->ink);
+        const double width = s->trace.line_width, film = films.of(s->ink);
         pace_line(s->trace, widths.preset(s->brush), film);
         const double longest = whole_length(widths.preset(s->brush), width, film);
         for (StrokeSamples& piece : cut_line(s->trace, longest, kMargin * 2 * line_end(width))) {

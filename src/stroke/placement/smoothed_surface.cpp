@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "core/ease.h"
+#include "core/simd.h"
 #include "stroke/placement/surface_mapping.h"
 
 namespace tuft::stroke {
@@ -49,42 +51,59 @@ bool solve(std::array<std::array<double, N>, N>& a, std::array<double, N>& b) {
     return true;
 }
 
-struct Height {
-    double a, b, z;  ///< over the disk, in radii
+/// Places over a disk, in radii, and the terms of the paraboloid there.
+struct Heights {
+    static constexpr int kTerms = 6, kPadded = 8, kMost = 37;  // of kRings rings
+    double a[kMost], b[kMost], z[kMost];
+    double terms[kMost][kPadded];  // 1, a, b, a²/2, ab, b²/2
+    double weight[kMost];          // of a fit
+    double rest[kMost];            // height over it
+    int size = 0;
+
+    void add(double at_a, double at_b, double height) {
+        a[size] = at_a, b[size] = at_b, z[size] = height;
+        const double all[kPadded] = {1, at_a, at_b, 0.5 * at_a * at_a, at_a * at_b, 0.5 * at_b * at_b};
+        std::copy(std::begin(all), std::end(all), terms[size++]);
+    }
 };
 
-std::array<double, 6> terms(const Height& h) {
-    return {1, h.a, h.b, 0.5 * h.a * h.a, h.a * h.b, 0.5 * h.b * h.b};
+constexpr double kNarrow = 0.01;  // radii: differences of height that count fully
+
+TUFT_CLONES void weigh(Heights& heights, const double* c, int terms, double below, bool first) {
+    for (int i = 0; i < heights.size; ++i) {
+        double rest = heights.z[i];
+        for (int k = 0; k < terms; ++k) rest -= c[k] * heights.terms[i][k];
+        heights.rest[i] = rest;
+        const double side = rest < 0 ? below : 1;
+        heights.weight[i] = first ? 1 : side / __builtin_sqrt(1 + rest * rest / (kNarrow * kNarrow));
+    }
 }
 
-template <int N>
-double rest_of(const Height& h, const std::array<double, N>& c) {
-    const std::array<double, 6> all = terms(h);
-    double rest = h.z;
-    for (int k = 0; k < N; ++k) rest -= c[k] * all[k];
-    return rest;
+/// Sums of the weighted products of the terms, and with the heights. Rows of both are padded.
+TUFT_CLONES void sum_products(const Heights& heights, int terms, double (*lhs)[Heights::kPadded], double* rhs) {
+    for (int i = 0; i < heights.size; ++i) {
+        const double* all = heights.terms[i];
+        for (int k = 0; k < terms; ++k) {
+            const double scaled = heights.weight[i] * all[k];
+            rhs[k] += scaled * heights.z[i];
+            for (int j = 0; j < Heights::kPadded; ++j) lhs[k][j] += scaled * all[j];
+        }
+    }
 }
 
 /// Least sum of pseudo-Huber distances, which narrow grooves hardly bend; convex, so that the
 /// fit changes as little as the surface does. N = 6: with curvature; 3: without.
 template <int N>
-bool fit(const std::vector<Height>& heights, double below, std::array<double, N>& c) {
-    constexpr double kNarrow = 0.01;  // radii: differences of height that count fully
+bool fit(Heights& heights, double below, std::array<double, N>& c) {
     constexpr int kPasses = 8;
     c.fill(0);
     for (int pass = 0; pass < kPasses; ++pass) {
+        double sums[N][Heights::kPadded] = {};
         std::array<std::array<double, N>, N> lhs{};
         std::array<double, N> rhs{};
-        for (const Height& h : heights) {
-            const std::array<double, 6> all = terms(h);
-            const double rest = rest_of<N>(h, c);
-            const double weight =
-                pass == 0 ? 1 : (rest < 0 ? below : 1) / std::sqrt(1 + rest * rest / (kNarrow * kNarrow));
-            for (int i = 0; i < N; ++i) {
-                rhs[i] += weight * all[i] * h.z;
-                for (int j = 0; j < N; ++j) lhs[i][j] += weight * all[i] * all[j];
-            }
-        }
+        weigh(heights, c.data(), N, below, pass == 0);
+        sum_products(heights, N, sums, rhs.data());
+        for (int k = 0; k < N; ++k) std::copy_n(sums[k], N, lhs[k].begin());
         if (!solve<N>(lhs, rhs)) return false;
         c = rhs;
     }
@@ -93,12 +112,12 @@ bool fit(const std::vector<Height>& heights, double below, std::array<double, N>
 
 /// Median distance of the samples from the fit, in radii.
 template <int N>
-double fit_error_of(const std::vector<Height>& heights, const std::array<double, N>& c) {
-    std::vector<double> rests;
-    rests.reserve(heights.size());
-    for (const Height& h : heights) rests.push_back(std::abs(rest_of<N>(h, c)));
-    const auto middle = rests.begin() + std::ptrdiff_t(rests.size() / 2);
-    std::nth_element(rests.begin(), middle, rests.end());
+double fit_error_of(Heights& heights, const std::array<double, N>& c) {
+    weigh(heights, c.data(), N, 1, false);
+    double* rests = heights.rest;
+    for (int i = 0; i < heights.size; ++i) rests[i] = std::abs(rests[i]);
+    double* middle = rests + heights.size / 2;
+    std::nth_element(rests, middle, rests + heights.size);
     return *middle;
 }
 
@@ -127,8 +146,7 @@ SurfacePatch fit_patch(const SurfaceQuery& query, const SurfacePatch& guess, dou
     const Vec3 side = glm::cross(guess.normal, guess.heading);
     const double up = clearance(query, guess.position, guess.normal, radius);
     const Vec3f down(-guess.normal);
-    std::vector<Height> heights;
-    heights.reserve(pattern().size());
+    Heights heights;
     for (const Vec2& p : pattern()) {
         const double bulge =
             0.5 * radius *
@@ -137,10 +155,10 @@ SurfacePatch fit_patch(const SurfaceQuery& query, const SurfacePatch& guess, dou
                          (up + std::clamp(radius * bulge, -radius, radius)) * guess.normal;
         const mesh::RayHit hit = query.trace(Vec3f(eye), down, 0, float(up + radius));
         if (hit.triangle == kNone || glm::dot(face_normal(query.mesh(), hit.triangle), guess.normal) < 0.1) continue;
-        heights.push_back({p.x, p.y, (glm::dot(eye - guess.position, guess.normal) - double(hit.distance)) / radius});
+        heights.add(p.x, p.y, (glm::dot(eye - guess.position, guess.normal) - double(hit.distance)) / radius);
     }
     SurfacePatch patch = guess;
-    const auto part = double(heights.size()) / double(pattern().size());
+    const auto part = double(heights.size) / double(pattern().size());
     double height = 0, fit_error = 0;
     Vec2 slope{0};
     if (std::array<double, 6> c; part >= kFit && fit<6>(heights, below, c)) {
@@ -150,10 +168,12 @@ SurfacePatch fit_patch(const SurfaceQuery& query, const SurfacePatch& guess, dou
         const double most = 1.0;  // detail sharper than the disk is no different from noise
         for (int k = 0; k < 3; ++k) patch.curvature[k] = std::clamp(c[3 + k], -most, most) / radius;
     } else if (std::array<double, 3> d; part >= kLeast) {
-        for (Height& h : heights)
-            h.z -=
-                0.5 * radius *
-                (guess.curvature[0] * h.a * h.a + 2 * guess.curvature[1] * h.a * h.b + guess.curvature[2] * h.b * h.b);
+        for (int i = 0; i < heights.size; ++i) {
+            const double at_a = heights.a[i], at_b = heights.b[i];
+            heights.z[i] -= 0.5 * radius *
+                            (guess.curvature[0] * at_a * at_a + 2 * guess.curvature[1] * at_a * at_b +
+                             guess.curvature[2] * at_b * at_b);
+        }
         if (!fit<3>(heights, below, d)) return patch;
         fit_error = fit_error_of<3>(heights, d);
         height = d[0];
