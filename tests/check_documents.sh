@@ -5,7 +5,8 @@
 #   `choose_step` (`film/film_step.cpp`). Names with a capital NAME are patterns.
 # - Commands in documents: subcommands of `tuft` and their options, suites of tests.
 # - Comments of headers: names in `back quotes`.
-# - Keys of sources, such as [Huang2018], and the folders in the table of modules in src/README.md.
+# - Keys of sources, such as [Huang2018]; no source is cited by names and year. The folders in the table of modules in
+#   src/README.md.
 set -euo pipefail
 export LC_ALL=C
 cd "$1"
@@ -70,6 +71,8 @@ keys='\[[A-Z][A-Za-z]*[A-Za-z][0-9]{4}\]'
 while read -r key; do missing src/BIBLIOGRAPHY.md "$key is cited and has no entry"; done < <(
   { code -print0 | xargs -0 grep -ohE "$keys" || true; find src -name README.md -print0 | xargs -0 grep -ohE "$keys"; } |
     sort -u | comm -23 - <(grep -oE "$keys" src/BIBLIOGRAPHY.md | sort -u))
+while IFS=: read -r file _ text; do missing "$file" "a source cited by name, not by key: $text"; done < <(
+  grep -rnoE --include='*.h' --include='*.cpp' '[A-Z][^ ()]+ (and [A-Z][^ ()]+|et al\.),? \(?(19|20)[0-9]{2}\b' src || true)
 # The table of modules in src/README.md names the folders of each.
 folders_named() { grep -oE '`[a-z]+`' <<<"$1" | tr -d '`' | grep -vx "$2" | sort || true; }
 folders_there() {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Fails when a file in src/ includes a folder that does not lie below its own, lies in a folder without a place in the
-# order, or includes a third-party header outside the module that may use it.
+# order or with more than 25 sources, or includes a third-party header outside the module that may use it.
 set -u
 src=$1
 # The order of all folders, lowest first. Folders of one line do not include each other.
@@ -93,6 +93,9 @@ complain() { echo "$1"; bad=1; }
 while read -r folder; do
   [ -n "${level[$folder]:-}" ] || complain "src/$folder has no place in the order of folders"
 done < <(cd "$src" && find . -name '*.h' -o -name '*.cpp' | sed -E 's#^\./##; s#/[^/]*$##' | sort -u)
+while read -r n folder; do
+  [ "$n" -le 25 ] || complain "src/$folder has $n sources: more than 25 are divided by what they do"
+done < <(cd "$src" && find . -name '*.h' -o -name '*.cpp' | sed -E 's#^\./##; s#/[^/]*$##' | sort | uniq -c)
 # One process for all: a shell would start one for each of thousands of lines.
 while read -r complaint; do complain "$complaint"; done < <(
   for folder in "${!level[@]}"; do echo "$folder ${level[$folder]}"; done | awk -v src="$src/" '
