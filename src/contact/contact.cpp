@@ -225,14 +225,15 @@ Attempt find_rest(Recycled<NodeWalls> walls, const Recycled<NodeContact>& predic
         const auto compared = std::span(last.nodes).first(w.nodes.size());
         Recycled<NodeContact> found =
             find_tuft_contacts(w, before, compared, {predicted, w.nodes, 0.5 * w.options.refresh_error});
-        const PlaneErrors errors = find_plane_errors(last.walls, found, compared, node_radius);
+        const NodesAtRest rest{compared, found, node_radius, in.lengths};
+        const PlaneErrors errors = find_plane_errors(last.walls, rest);
         if (errors.worst < w.options.refresh_error) {
             verified = std::move(found);
             verified.resize(in.radii.size());
             break;
         }
         Recycled<NodeWalls> renewed = last.walls;
-        renew_walls(renewed, last.walls, errors.near, found, compared, node_radius, in.lengths);
+        renew_walls(renewed, last.walls, errors.near, rest);
         std::swap(static_cast<brush::TuftBend&>(tuft), solved);
         static_cast<brush::TuftBend&>(tuft) = before;
         Attempt next = bend_against(std::move(renewed), in, tuft, start);

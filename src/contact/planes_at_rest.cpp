@@ -25,8 +25,8 @@ brush::ContactPlane refresh_plane(const brush::ContactPlane& old, const NodeCont
 
 }  // namespace
 
-PlaneErrors find_plane_errors(const Recycled<NodeWalls>& walls, const Recycled<NodeContact>& found,
-                              std::span<const Vec3> nodes, const NodeRadii& radii) {
+PlaneErrors find_plane_errors(const Recycled<NodeWalls>& walls, const NodesAtRest& rest) {
+    const auto& [nodes, found, radii, lengths] = rest;
     PlaneErrors errors;
     errors.near.reserve(walls.size());
     for (std::size_t i = walls.size(); i-- > 0;) {
@@ -40,8 +40,8 @@ PlaneErrors find_plane_errors(const Recycled<NodeWalls>& walls, const Recycled<N
 }
 
 void renew_walls(Recycled<NodeWalls>& walls, const Recycled<NodeWalls>& before, const Recycled<std::size_t>& near,
-                 const Recycled<NodeContact>& found, std::span<const Vec3> nodes, const NodeRadii& radii,
-                 const Recycled<std::size_t>& lengths) {
+                 const NodesAtRest& rest) {
+    const auto& [nodes, found, radii, lengths] = rest;
     for (const std::size_t i : near) {
         const NodeWalls* inboard = is_root(lengths, i) ? nullptr : &walls[i + 1];
         const NodeWalls& old = before[i];

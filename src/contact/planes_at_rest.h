@@ -24,14 +24,20 @@ struct PlaneErrors {
     Recycled<std::size_t> near;  ///< nodes near the surface, from the root
 };
 
-/// Compares the planes of a solve with what was `found` at the nodes.
-PlaneErrors find_plane_errors(const Recycled<NodeWalls>& walls, const Recycled<NodeContact>& found,
-                              std::span<const Vec3> nodes, const NodeRadii& radii);
+/// The nodes of a tuft where a solve left them, spine after spine, each tip first.
+struct NodesAtRest {
+    std::span<const Vec3> nodes;           ///< metres, world
+    const Recycled<NodeContact>& found;    ///< the surface at them
+    const NodeRadii& radii;                ///< of the tuft
+    const Recycled<std::size_t>& lengths;  ///< nodes of each spine
+};
+
+/// Compares the planes of a solve with the surface at the nodes.
+PlaneErrors find_plane_errors(const Recycled<NodeWalls>& walls, const NodesAtRest& rest);
 
 /// Gives the nodes of `near` the walls that were found where they came to rest, from the root, which the walls of the
-/// next ones agree with. `before`: the walls as they were; `lengths`: nodes of each spine.
+/// next ones agree with. `before`: the walls as they were.
 void renew_walls(Recycled<NodeWalls>& walls, const Recycled<NodeWalls>& before, const Recycled<std::size_t>& near,
-                 const Recycled<NodeContact>& found, std::span<const Vec3> nodes, const NodeRadii& radii,
-                 const Recycled<std::size_t>& lengths);
+                 const NodesAtRest& rest);
 
 }  // namespace tuft::contact
