@@ -85,7 +85,7 @@ std::vector<Vec3> MacroModel::mean_nodes() const {
 void MacroModel::bend(Collision& collision, double dt) {
     release_copies(clusters_, collision, pose_);
     for (MacroCluster& cluster : clusters_) {
-        carry(cluster.primitive, pose_, collision.pose);
+        move_rigidly(cluster.primitive, pose_, collision.pose);
         recover(cluster.primitive, collision.pose, law_, dt);
     }
     pose_ = collision.pose;

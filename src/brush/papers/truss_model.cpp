@@ -89,7 +89,7 @@ class TrussModel final : public SpineModel {
     StepContact step_contact(const SpineModelInput& input) const;
     void nudge(const SpineModelInput& input, const StepContact& contact);
     void move(const SpineModelInput& input);
-    Vec3 hand_force(const SpineModelInput& input) const;
+    Vec3 contact_force(const SpineModelInput& input) const;
     Recycled<Section> make_sections(const SpineModelInput& input);
     void share_load(const SpineModelInput& input, TuftState& state) const;
 
@@ -157,7 +157,7 @@ void TrussModel::move(const SpineModelInput& input) {
 }
 
 /// The force law of 4.2 to 4.4, newtons, world.
-Vec3 TrussModel::hand_force(const SpineModelInput& input) const {
+Vec3 TrussModel::contact_force(const SpineModelInput& input) const {
     if (input.planes.empty()) return Vec3{0};
     const Vec3 axis = input.pose.axis(), point = input.pose.position + preset_.length * axis;
     const HalfSpace space = half_space_of(input.planes.front(), point);
@@ -238,7 +238,7 @@ TuftState TrussModel::step(const SpineModelInput& input) {
     move(input);
     TuftState state;
     state.branches.push_back({make_sections(input), 1});
-    state.force = hand_force(input);
+    state.force = contact_force(input);
     if (!input.planes.empty()) state.normal_force = glm::dot(state.force, input.planes.front().normal);
     state.energy.bend = spring_energy(truss_, particles_);
     share_load(input, state);

@@ -161,7 +161,7 @@ class Search {
     }
 
     // With many points.
-    void polish(MotionFreedom freedom) {
+    void refine(MotionFreedom freedom) {
         if (!found_ || least_.all < kExact * size_) return;
         const std::vector<OrientedPoint> many = even_points(former_.query.mesh(), kManyPoints);
         // At first with what would slide along a smooth surface but for its border, then without what was changed.
@@ -219,7 +219,7 @@ std::optional<ModelMotion> search_whole(const Side& former, const Side& revised,
     const auto& found = search.found();
     if (!found) return found;
     const bool stretched = found->stretch != Mat3(1);
-    search.polish(stretched ? MotionFreedom::affine : found->scale == 1 ? MotionFreedom::rigid : most);
+    search.refine(stretched ? MotionFreedom::affine : found->scale == 1 ? MotionFreedom::rigid : most);
     ModelMotion motion = about(*search.found(), former.box.centre());
     motion.scale = plain_scale(motion.scale);
     return motion;
@@ -263,7 +263,7 @@ std::optional<ModelMotion> search_part(const mesh::TriangleMesh& former_mesh, co
     ModelMotion centred = whole;
     centred.to += revised.box.centre() - whole(former.box.centre());
     for (const ModelMotion& start : {centred, whole}) search.attempt(start, MotionFreedom::rigid);
-    search.polish(MotionFreedom::rigid);
+    search.refine(MotionFreedom::rigid);
     if (!search.found()) return {};
     return about(*search.found(), former.box.centre());
 }

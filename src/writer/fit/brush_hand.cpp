@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/hat.h"
 #include "stroke/placement/tip_lag.h"
 #include "writer/gesture/stroke_line.h"
 
@@ -70,7 +71,7 @@ std::vector<Vec2> blended(const std::vector<Vec2>& own, std::span<const double> 
     for (std::size_t i = 0; i < own.size(); ++i) {
         double all = 0;
         for (std::size_t k = 0; k < own.size(); ++k) {
-            const double weight = std::max(0.0, 1 - std::abs(along[k] - along[i]) / std::max(reach, 1.0));
+            const double weight = hat(along[k] - along[i], std::max(reach, 1.0));
             out[i] += weight * own[k], all += weight;
         }
         out[i] /= all;

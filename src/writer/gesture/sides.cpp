@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/geometry/plane_vectors.h"
+#include "core/hat.h"
 #include "core/text/units.h"
 
 namespace tuft::writer {
@@ -130,7 +131,7 @@ void reach_corners(std::vector<Station>& path, const StrokeLine& line, const Str
         const double there = glm::dot(before[corner].centre - line.at(at), outward);
         const double push = std::clamp((to_left ? side.y : side.x) - half - there, 0.0, kMostPush);
         for (std::size_t i = 0; i < path.size(); ++i) {
-            const double weight = 1 - std::abs(static_cast<double>(i) * step - at) / kCornerReach;
+            const double weight = hat(static_cast<double>(i) * step - at, kCornerReach);
             if (weight > 0) path[i].centre += weight * push * outward;
         }
     }

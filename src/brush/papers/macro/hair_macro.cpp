@@ -154,7 +154,7 @@ HairMacro at_rest(const HairMacro& macro, const Pose& pose) {
     return m;
 }
 
-void carry(HairMacro& m, const Pose& from, const Pose& to) {
+void move_rigidly(HairMacro& m, const Pose& from, const Pose& to) {
     const Quat back = glm::conjugate(from.rotation);
     for (Vec3& p : m.skeleton) p = to_world(to, back * (p - from.position));
 }

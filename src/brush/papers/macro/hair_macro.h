@@ -81,7 +81,7 @@ HairMacro at_rest(const HairMacro& macro, const Pose& pose);
 std::vector<Vec3> nodes_of(const CurveSpline& skeleton, const HairRow& row);
 
 /// Moves the macro rigidly with the ferrule.
-void carry(HairMacro& macro, const Pose& from, const Pose& to);
+void move_rigidly(HairMacro& macro, const Pose& from, const Pose& to);
 
 /// Recovery from deformation over dt: H ← (1 − x) H + x H_u (5.10). θ of a round macro stays: a circle has none.
 void recover(HairMacro& macro, const Pose& pose, const MacroLaw& law, double dt);
