@@ -30,11 +30,11 @@ struct NodeQuery {
     const Vec3* known = nullptr;  ///< any point of the surface: bounds the search and makes it faster; null: none
 };
 
-/// Triangles of one mesh from whose points no sharp convex edge is in reach, as far as they were looked at: nodes come
-/// to the same ones again and again. It makes the search faster and changes no result.
+/// Cache of which triangles of one mesh have no sharp convex edge in reach of their points. Nodes come to the same
+/// triangles again and again: it makes the search faster and changes no result.
 class SmoothTriangles {
   public:
-    bool has_no_edge(const mesh::TriangleMesh& mesh, std::uint32_t triangle);
+    bool has_no_edge(const mesh::TriangleMesh& mesh, std::uint32_t triangle);  ///< looks where it does not know
 
   private:
     static constexpr std::size_t kSlots = 1024;
@@ -55,7 +55,7 @@ struct NodeContactOptions {
 NodeContact find_node_contact(const mesh::SurfaceQuery& surface, const NodeQuery& query,
                               const NodeContactOptions& options);
 
-/// What is known of the contacts of a chain before they are looked for. Each may be empty.
+/// What an earlier search found for a chain. Each may be empty.
 struct KnownContacts {
     std::span<const NodeContact> contacts;  ///< of the same nodes a little before
     std::span<const Vec3> nodes;            ///< metres, where the nodes of `contacts` were; none: unknown

@@ -80,7 +80,7 @@ struct TuftBend {
     Recycled<Beside> beside;  ///< pairs of neighbours
     bool split = false;
     Recycled<Spine> sub_spines;                  ///< sub-spines of the last third, `split_into` of them while split
-    double spread = 0;                           ///< separation: 0 nonee point … 1 fully
+    double spread = 0;                           ///< separation: 0 none … 1 full
     double branch_width = 0;                     ///< m, semi-axis of the section at their roots
     Vec3 device_force{0}, device_force_rate{0};  ///< device force f, N, and its rate, N/s
     /// For the methods of brush/papers and for foam only; the trunk then follows its nodes, and there are no sub-spines

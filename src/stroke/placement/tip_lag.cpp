@@ -193,7 +193,7 @@ double depth_of(const HolderOptions& options, double pressure) {
     return std::clamp(pressure, 0.0, 1.0) * options.working_depth;
 }
 
-/// What a lean and a turn add to the tip_lag, `along` the path; that is 1 long where the string is taut.
+/// What a lean and a turn add to the tip lag, `along` the path; that is 1 long where the string is taut.
 Vec2 tilted_tip_lag(const HolderOptions& options, const Vec2& tilt, double roll, double depth, const Vec2& along) {
     const double taut = glm::length(along), lean = glm::length(tilt);
     // Across the broad side the lag without a change is that of a holder that leans as its make does.
@@ -272,7 +272,7 @@ double first_pace(std::span<const StrokeSample> samples, double reach) {
     return gone > 0 && taken > 0 ? gone / taken : 0;
 }
 
-// The hand of a trace that begins pressed goes the tip_lag while it presses: the tip touches where the trace
+// The hand of a trace that begins pressed goes ahead by the tip lag while it presses: the tip touches where the trace
 // begins and trails from there. Set down from above it would bend to any side, and a tuft that is
 // pushed before the hand turns over only after centimetres.
 bool set_down(StrokeSamples& trace, const HolderOptions& options, const Vec2& ahead, bool dot) {

@@ -131,11 +131,11 @@ inline constexpr double kHoverTime = 0.05;  ///< seconds of the tip between the 
 /// Where the path reverses, the tip lag passes through zero. A wide ferrule is lifted there and set down to its other
 /// side, with the ink up to the place where the path turns. A trace that begins pressed gets samples before its first
 /// one, at the same place and earlier in time, whose pressure rises to the first; the holder moves at `kSetDownPace`
-/// times the trace's speed, so that the tip touches first and trails. It leans ahead by 0.12 rad meanwhile where a make
-/// that leans does not already tilt it ahead by more, and so does that of a blade at any landing, over `blade_landing`.
-/// A blade turns as late as the string
-/// (`BladeRoll`). A holder upright to 0.05 rad sets the brush down plumb and reaches its lean within 0.3 lengths of the
-/// tuft.
+/// times the trace's speed, so that the tip touches first and trails. It leans ahead by 0.12 rad more, which fades over
+/// 4 `tip_lag_turn`; not where the lean of its make already tilts it ahead by more than that. A blade leans so at any
+/// landing, over `blade_landing` at least. It turns as late as the string (`BladeRoll`).
+///
+/// A holder upright to 0.05 rad sets the brush down plumb and reaches its lean within 0.3 lengths of the tuft.
 ///
 /// The hand's speed bounds the holder's. Over a surface of curvature κ, while the tuft is pressed,
 ///

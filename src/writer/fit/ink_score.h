@@ -26,7 +26,7 @@ std::vector<float> coverage_by(const stroke::PlaneInk& ink, const Cells& cells);
 /// wrongly, each of weight w and d units from the edge. `depths`, `coverage`: [cells of the target].
 InkScore score_of(const FitTarget& target, std::span<const float> depths, std::span<const float> coverage);
 
-/// Returns the turns of an area by which the knuckles of ink on it are told.
+/// Returns the turns of an area by which the knuckles of ink on it are recognised.
 std::vector<EdgeTurn> wanted_edge_turns(const Cells& wanted);
 
 /// Returns the knuckles of ink, `wanted_edge_turns` given, but for those under other strokes, where errors weigh less than

@@ -88,9 +88,9 @@ struct SplitGeometry {
     static void* operator new(std::size_t bytes) { return Geometry::operator new(bytes); }
     static void operator delete(void* split, std::size_t bytes) { Geometry::operator delete(split, bytes); }
 };
-/// `inside` with the faces between texels of tiles of a zone, which `in_zone` says of the tile and
-/// those round it, and `outside` with all others. There closed faces keep only the flag
-/// that slopes may be taken over them.
+/// Splits the faces of a tile: `inside` has those between two texels of a zone of tiles, `outside` all others, and of
+/// the former only the flag that slopes may be taken over them. `in_zone`: of the tile and the eight round it, row by
+/// row.
 std::unique_ptr<SplitGeometry> split(const Geometry& g, const std::array<bool, 9>& in_zone);
 
 /// Limits of the flow in one step, so that no amount gets negative.
@@ -158,8 +158,8 @@ struct alignas(64) Work {
 
 /// A plane with a border of one texel from the tiles around, row by row: [256] each, none null.
 void gather_field(Field& field, const std::array<const float*, 9>& planes);
-/// What follows from w and s, what goes through the faces, and dw and ds from that. Whether less than rim_depth stands
-/// on some texel.
+/// Computes what follows from w and s, the fluxes through the faces, and dw and ds from them. Returns whether some
+/// texel has less liquid than `rim_depth`.
 bool fluxes(Work& work, const Geometry& g, const Step& step);
 /// Sets `total` and `rim_slope` from w and s, of what is no higher than `depth`.
 void find_rim_slopes(Work& work, const Geometry& g, float depth);
