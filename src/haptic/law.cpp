@@ -11,6 +11,7 @@ namespace {
 constexpr double T = kPeriod;
 constexpr double kRootMass = 0.02;       // m, kg
 constexpr double kVelocityTime = 4e-3;   // s, of the low-pass of v_x: B count / T would be 0.3 N of noise
+constexpr double kCourseTime = 16e-3;    // s, of a low-pass of the velocity: long to let counts of a slow hand pass
 constexpr double kFadeStiffness = 1000;  // N/m
 constexpr double kRootStiffness = 2 * kRootMass / (T * T);  // N/m
 constexpr double kFadeFree = 0.01;                          // N that g may jump in a period
@@ -51,19 +52,19 @@ Vec3 expected_motion(const LawState& s, std::size_t j) {
     return T * (s.arm.velocity + ahead * (s.arm.velocity - s.arm.velocity_before));
 }
 
-/// Step 1: moves x on, and returns by what.
+/// Moves x on, and returns by what.
 Vec3 follow_arm(const LawOptions& options, LawState& s, const Vec3& measured) {
     ArmMotion& arm = s.arm;
     const double count = options.limits.count * options.scale, passed = settled_part(T, kVelocityTime);
-    const Vec3 next = expected_motion(s, 1), before = arm.position;
-    arm.still = measured == arm.measured ? arm.still + 1 : 0;
+    const Vec3 before = arm.position, next = T * arm.course;
+    arm.still = measured == arm.measured ? std::min(arm.still + 1, kStill) : 0;
+    // An arm that still moved would have come to other counts by now.
+    if (glm::length(next) * arm.still > kStopped * count) arm.still = kStill;
     arm.measured = measured;
     arm.position = measured + limited(before + next - measured, kWithin * count);
     const Vec3 moved = arm.position - before;
-    // An arm that still moved would have come to other counts by now.
-    const bool stopped = glm::length(next) * arm.still > kStopped * count || arm.still >= kStill;
-    if (stopped) arm.still = kStill;
-    arm.velocity += ((stopped ? Vec3{0} : moved / T) - arm.velocity) * passed;
+    arm.course += ((arm.still < kStill ? moved / T : Vec3{0}) - arm.course) * settled_part(T, kCourseTime);
+    arm.velocity += (moved / T - arm.velocity) * passed;
     arm.velocity_before += (arm.velocity - arm.velocity_before) * passed;
     return moved;
 }

@@ -11,9 +11,10 @@
 /// force on the hand. Pure: no clock, no thread, no memory allocation. `Servo` (servo.h) calls it.
 ///
 /// Frame: world, metres at the brush. x is the arm, y the virtual root of the tuft, which a coupling holds to the arm.
-/// Hair is solved at y, and the stroke is painted from y. The arm reads its place in counts. Where it moves on as it
-/// did, it has come on by Δx̂ (step 6) within them: x = x_c + [x + Δx̂ − x_c], of at most half a count, x_c what is
-/// measured. So counts stir up neither spring nor damper, and x does not flicker between two of them. In each period:
+/// Hair is solved at y, and the stroke is painted from y. The arm reads its place in counts. x goes on within them as
+/// it went: x = x_c + [x + T v_c − x_c], the bracket of at most half a count, x_c what is measured, v_c the velocity of
+/// x low-passed at 16 ms, which ends where two counts should have come and none has. So counts stir up neither spring
+/// nor damper, and x does not flicker between two of them. In each period:
 ///
 /// 1. g = G F(y, q).
 /// 2. Fade. What g jumps beyond a = min(k_max, 1000 N/m) |Δx| + 2 m/T² |Δy| + 0.01 N goes into an offset o −= jump − a;
@@ -73,6 +74,7 @@ struct LawOptions {
 struct ArmMotion {
     Vec3 position{0};           ///< x, m
     Vec3 measured{0};           ///< m
+    Vec3 course{0};             ///< v_c, m/s, low-passed at 16 ms
     int still = 0;              ///< periods in which that has not changed
     Quat rotation{1, 0, 0, 0};  ///< q
     Vec3 velocity{0};           ///< v_x, m/s, low-passed
