@@ -12,6 +12,7 @@ constexpr double T = kPeriod;
 constexpr double kRootMass = 0.02;       // m, kg
 constexpr double kVelocityTime = 4e-3;   // s, of the low-pass of v_x: B count / T would be 0.3 N of noise
 constexpr double kCourseTime = 16e-3;    // s, of a low-pass of the velocity: long to let counts of a slow hand pass
+constexpr double kRestTime = 50e-3;      // s, in which x comes to what is measured of an arm that stands
 constexpr double kFadeStiffness = 1000;  // N/m
 constexpr double kRootStiffness = 2 * kRootMass / (T * T);  // N/m
 constexpr double kFadeFree = 0.01;                          // N that g may jump in a period
@@ -56,10 +57,13 @@ Vec3 expected_motion(const LawState& s, std::size_t j) {
 Vec3 follow_arm(const LawOptions& options, LawState& s, const Vec3& measured) {
     ArmMotion& arm = s.arm;
     const double count = options.limits.count * options.scale, passed = settled_part(T, kVelocityTime);
-    const Vec3 before = arm.position, next = T * arm.course;
+    const Vec3 before = arm.position;
+    Vec3 next = T * arm.course;
     arm.still = measured == arm.measured ? std::min(arm.still + 1, kStill) : 0;
     // An arm that still moved would have come to other counts by now.
     if (glm::length(next) * arm.still > kStopped * count) arm.still = kStill;
+    // One that stands may be anywhere between two counts: in the middle x is off by half of one at most.
+    if (arm.still == kStill) next = settled_part(T, kRestTime) * (measured - before);
     arm.measured = measured;
     arm.position = measured + limited(before + next - measured, kWithin * count);
     const Vec3 moved = arm.position - before;

@@ -13,8 +13,8 @@
 /// Frame: world, metres at the brush. x is the arm, y the virtual root of the tuft, which a coupling holds to the arm.
 /// Hair is solved at y, and the stroke is painted from y. The arm reads its place in counts. x goes on within them as
 /// it went: x = x_c + [x + T v_c − x_c], the bracket of at most half a count, x_c what is measured, v_c the velocity of
-/// x low-passed at 16 ms, which ends where two counts should have come and none has. So counts stir up neither spring
-/// nor damper, and x does not flicker between two of them. In each period:
+/// x low-passed at 16 ms. Where two counts should have come and none has, the arm stands, and x comes to x_c in 50 ms.
+/// So counts stir up neither spring nor damper, and x does not flicker between two of them. In each period:
 ///
 /// 1. g = G F(y, q).
 /// 2. Fade. What g jumps beyond a = min(k_max, 1000 N/m) |Δx| + 2 m/T² |Δy| + 0.01 N goes into an offset o −= jump − a;

@@ -125,8 +125,8 @@ double swing_of(const TrialReport& report, const TrialModel& f) {
 }
 
 // Hair that stands on its ends, and a sponge on an edge, push back with 10,000 N/m and more at the hand. While the fade
-// let their force come late, the root swung on them by 1.3 mm, up to 14 N, in a press of half a hand's second: the hand
-// got back 163 and 472 µJ, and the stroke was painted from such a root.
+// let their force come late, the root swung on them by 1.3 mm, up to 14 N, in a slow press: the hand got back
+// 163 and 472 µJ, and the stroke was painted from such a root.
 TEST(Trial, ARootOnStiffHairStandsStillAndGivesNothingBack) {
     for (const auto& [place, brush] : {std::pair("sheet", "bright-12"), std::pair("rim", "sponge-30")}) {
         SCOPED_TRACE(place);
@@ -433,7 +433,13 @@ TEST(Trial, WithRestoreAHandAtRestHasTheForceOfTheHairAtTheArm) {
         }
         const Vec3 hair = options.law.gain * answer.force;
         EXPECT_GT(glm::length(hair), 0.1) << place;
-        EXPECT_LT(glm::distance(r.forces.back(), hair), 0.03 * glm::length(hair)) << place << " " << limits.name;
+        // The arm is known to half a count, in which hair that sticks changes its force by as much as it does per metre
+        // on the way from the root to the arm.
+        const double way = std::max(glm::distance(from, r.arms.back()), 0.5 * limits.count);
+        const double half_count = glm::distance(options.law.gain * r.last_hair, hair) * 0.5 * limits.count / way;
+        EXPECT_LT(way, limits.count) << place << " " << limits.name;
+        EXPECT_LT(glm::distance(r.forces.back(), hair), 0.03 * glm::length(hair) + half_count)
+            << place << " " << limits.name;
     }
 }
 
