@@ -131,6 +131,15 @@ std::optional<SharpEdge> find_edge(const mesh::TriangleMesh& mesh, const mesh::S
     return best;
 }
 
+/// The point `lift` before the wall that a node lies behind. Along the smooth normal: with that of the face, nodes
+/// below an edge would come to lie before either of its faces, by rounding, apart by their depth times its angle.
+Vec3 before_wall(const mesh::SurfacePoint& wall, const Vec3& node, double side, double lift) {
+    const Vec3 n = side * wall.face_normal, smooth = side * wall.normal;
+    const double depth = glm::dot(wall.position - node, n), cosine = glm::dot(smooth, n);
+    constexpr double kNear = 0.7;  // 45°: farther apart, the one is not that of the surface there
+    return cosine > kNear ? node + (depth / cosine + lift) * smooth : node + (depth + lift) * n;
+}
+
 /// Whether the surface point q lies on an edge from whose other face `off` leads outwards.
 bool before_other_face(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint& q, double side, const Vec3& off) {
     const double weight[3] = {1 - q.b1 - q.b2, q.b1, q.b2};
@@ -190,8 +199,7 @@ NodeContact find_node_contact(const mesh::SurfaceQuery& surface, const NodeQuery
     if (length > 1e-9) {
         if (const auto wall = surface.ray(query.from, path / length, 0, length)) {
             out.side = glm::dot(wall->face_normal, path) < 0 ? 1 : -1;
-            const Vec3 n = out.side * wall->face_normal;
-            front = node + (glm::dot(wall->position - node, n) + options.lift) * n;
+            front = before_wall(*wall, node, out.side, options.lift);
             behind = true;
         }
     }

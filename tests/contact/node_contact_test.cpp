@@ -43,6 +43,22 @@ TEST(NodeContact, NormalTurnsSmoothlyOverAConvexEdge) {
     EXPECT_NEAR(before.x, 1, 1e-6);
 }
 
+// Pressed through a ridge of 2.3°, on either side of the plane through it by what a float rounds. The node comes to the
+// ridge from both; along the normals of the faces it came 2 depth sin 0.02 apart.
+TEST(NodeContact, BelowAnEdgeOfASmoothSurfaceItIsTheSameFromEitherFace) {
+    const mesh::TriangleMesh m = shapes::roof(0.02, 0.02, 20);
+    const mesh::SurfaceQuery surface(m);
+    for (const double depth : {1e-4, 1e-3, 3e-3}) {
+        const auto below = [&](double x) {
+            return find_node_contact(surface, {{x, 2e-4, -depth}, {x, 2e-4, 0.01}}, {});
+        };
+        const NodeContact left = below(-1e-9), right = below(1e-9);
+        EXPECT_NEAR(glm::length(left.plane.origin - right.plane.origin), 0, 1e-8) << depth;
+        EXPECT_NEAR(glm::length(left.plane.normal - right.plane.normal), 0, 1e-5) << depth;
+        EXPECT_NEAR(left.height, -depth, 1e-8) << depth;
+    }
+}
+
 // What is known of a surface bounds the search and leaves out what cannot be: no bit of a contact changes, on a block
 // with sharp edges, on a smooth bowl and on a roof, from coarse triangles to some finer than the reach of an edge.
 TEST(NodeContact, KnownContactsAndSmoothTrianglesChangeNoBit) {
