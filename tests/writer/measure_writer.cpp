@@ -1,12 +1,13 @@
 // Measures the writer on characters of a folder of hanzi-writer-data:
 //   measure_writer sides DATA CHARACTERS                     features and measured sides of each stroke, a line each
 //   measure_writer score DATA CHARACTERS [--fit 1] [--brush NAME] [--side MM] [--tries N] [--step UNITS] [--verbose 1]
-//                                                          [--weak FOLDER] [--plain 1] [--drawn FOLDER]
+//                                                          [--weak FOLDER] [--plain 1] [--drawn FOLDER] [--copied 1]
 //   measure_writer copy DATA CHARACTERS                      strokes that are found again in a picture of the character
 // CHARACTERS is a file. --weak writes a picture (.ppm) of each stroke below 0.92 (--below): wanted grey, missing red,
 // extra blue, the path of the brush green. --plain takes the cue of the head off the centre lines: a first segment of
 // less than 60 units, and the outlines, as sources without them (KanjiVG) are. --drawn writes each character as it is
-// drawn (.pgm, a pixel a unit, for score_painted.py --drawn). `score` draws the writer's strokes on a plane, without
+// drawn (.pgm, a pixel a unit, for score_painted.py --drawn). --copied writes copies of pictures of the characters, and
+// compares with these. `score` draws the writer's strokes on a plane, without
 // texels, and compares their union with the outlines in cells of 2 units; score_painted.py compares what `tuft write`
 // painted.
 #include <fmt/format.h>
@@ -203,6 +204,11 @@ int main(int argc, char** argv) {
     for (const char32_t code : characters) {
         Glyph glyph = load(words.at(1), code);
         if (options.contains("plain")) take_cues_off(glyph);
+        if (options.contains("copied")) {
+            const Cells ink = ink_of(picture_of(glyph), utf8_of(code));
+            const Skeleton skeleton = skeleton_of(ink);
+            glyph = copied_glyph(ink, skeleton, order_by_rules(skeleton), code);
+        }
         Glyph given = glyph;
         if (options.contains("plain"))  // nor do such sources state outlines
             for (GlyphStroke& s : given.strokes) s.outline.clear();

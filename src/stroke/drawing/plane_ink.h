@@ -57,8 +57,8 @@ class PlaneDrawing {
     const PlaneInk& draw(const StrokeSamples& trace);
     /// Bends the tuft along a trace up to a time (seconds) and keeps that state for `draw_part`.
     void keep(const StrokeSamples& trace, double time);
-    /// Returns the ink of the part of a trace from the kept state on up to a time, until the next call. Precondition: up
-    /// to the time of the kept state the trace is the one that was kept.
+    /// Returns the ink of the part of a trace from the kept state on up to a time, until the next call. Precondition:
+    /// up to the time of the kept state the trace is the one that was kept.
     const PlaneInk& draw_part(const StrokeSamples& trace, double until);
 
   private:

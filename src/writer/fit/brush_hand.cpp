@@ -102,7 +102,8 @@ std::vector<Vec2> tilts_of(std::span<const Station> stations, std::span<const do
     if (!named) return none;
     std::vector<Vec2> tilts = blended(own, along, pace.ease);
     // Upright all the way, and meant so: a make leans where no sample says otherwise (`stroke::lean_holder`).
-    if (hand.hold.lean > 0 && std::ranges::all_of(tilts, [](const Vec2& t) { return t == Vec2(0); })) tilts.front().x = kUpright;
+    if (hand.hold.lean > 0 && std::ranges::all_of(tilts, [](const Vec2& t) { return t == Vec2(0); }))
+        tilts.front().x = kUpright;
     return tilts;
 }
 

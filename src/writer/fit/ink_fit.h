@@ -56,7 +56,8 @@ struct FitResult {
 /// manner ends early where its score is above 0.98 and a try gains less than 0.002, and where after t tries it is
 /// behind the best of the others by more than 0.06 / t. At last the path is corrected in steps nearly as fine as those
 /// of painting, smoothed over at most 1.2 stations; of these drawings the one is kept that has the largest score less
-/// 0.002, or 0.006 with `options.fair`, times `sharpness_of`, a sum over its knuckles.
+/// 0.002, or 0.0015 with `options.fair`, times `sharpness_of`, a sum over its knuckles. Those that are left are taken
+/// off one by one (`take_off_knuckles`).
 ///
 /// With `options.fair` the path and its half widths are made fair after each correction (`make_fair`), and wanted cells
 /// that no disc within the area reaches weigh a tenth: discs of 0.9 half widths, less what exceeds a multiple of 4

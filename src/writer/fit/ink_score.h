@@ -29,8 +29,8 @@ InkScore score_of(const FitTarget& target, std::span<const float> depths, std::s
 /// Returns the turns of an area by which the knuckles of ink on it are recognised.
 std::vector<EdgeTurn> wanted_edge_turns(const Cells& wanted);
 
-/// Returns the knuckles of ink, `wanted_edge_turns` given, but for those under other strokes, where errors weigh less than
-/// 1 and are not seen.
+/// Returns the knuckles of ink, `wanted_edge_turns` given, but for those under other strokes, where errors weigh less
+/// than 1 and are not seen.
 std::vector<EdgeTurn> seen_knuckles(const FitTarget& target, std::span<const EdgeTurn> turns,
                                     std::span<const float> coverage);
 

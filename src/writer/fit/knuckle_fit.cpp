@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 
 #include "core/system/interrupt.h"
@@ -13,18 +12,14 @@
 namespace tuft::writer {
 namespace {
 
-double env(const char* name, double otherwise) {
-    const char* v = std::getenv(name);
-    return v ? std::atof(v) : otherwise;
-}
-static const double kChanged = env("T_REACH", 48);       // units about a knuckle in which the path changes
-static const double kWholeHead = env("T_HEAD", 60);        // units from the first station: the head changes
-static const double kDrawnBefore = env("T_BEFORE", 16);  // units before a change from which it is drawn
-static const double kDrawnAfter = env("T_AFTER", 40);    // units after it to which it is drawn: the hair trails
-static const double kFirstChange = env("T_STEP", 4);     // units
-static const int kSearchRounds = static_cast<int>(env("T_ROUNDS", 2));
-static const double kKnucklePrice = env("T_PRICE", 0.002);  // of the score, for a knuckle of the least curvature
-static const std::size_t kMostKnuckles = static_cast<std::size_t>(env("T_MOST", 4));
+constexpr double kChanged = 48;           // units about a knuckle in which the path changes
+constexpr double kWholeHead = 60;         // units from the first station: the head changes
+constexpr double kDrawnBefore = 16;       // units before a change from which it is drawn
+constexpr double kDrawnAfter = 40;        // units after it to which it is drawn: the hair trails
+constexpr double kFirstChange = 4;        // units
+constexpr int kSearchRounds = 3;          // each with half the step of the one before
+constexpr double kKnucklePrice = 0.0015;  // of the score, for a knuckle of the least curvature
+constexpr std::size_t kMostKnuckles = 4;
 constexpr double kSameKnuckle = 40;  // units: a knuckle so near to one that was tried is that one
 constexpr std::size_t kNumbers = 6;
 
@@ -75,26 +70,28 @@ class Part {
     Vec2 ahead_{0};
 };
 
-/// Coverage by what a drawing inked before or after a time.
-std::vector<float> coverage_but(const stroke::PlaneInk& ink, const Cells& cells, double unit, double from,
-                                double until) {
+/// Coverage by what a drawing inked before a time.
+std::vector<float> coverage_before(const stroke::PlaneInk& ink, const Cells& cells, double unit, double until) {
     std::vector<float> rest = coverage_by(ink, cells);
     for (int j = 0; j < cells.height; ++j)
         for (int i = 0; i < cells.width; ++i) {
             float& there = rest[std::size_t(j) * cells.width + i];
             if (!(there > 0)) continue;
             const double when = ink.when(cells.centre(i, j) * unit);
-            if (when < 0 || (when >= from && when <= until)) there = 0;
+            if (when < 0 || when >= until) there = 0;
         }
     return rest;
 }
 
-/// A path and what its ink is worth.
-struct Drawn {
-    Change change{};
+void add_coverage(std::vector<float>& to, const std::vector<float>& more) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = std::max(to[i], more[i]);
+}
+
+/// What ink is worth.
+struct Worth {
     InkScore reached;
+    std::vector<EdgeTurn> knuckles;
     double value = 0;
-    bool smooth = false;  // no knuckle is left where one was
 };
 
 /// Fits a stroke part by part.
@@ -108,55 +105,79 @@ class KnuckleFit {
           wanted_turns_(wanted_edge_turns(target.target.wanted)) {}
 
     void fit(FitResult& fitted) {
-        const Cells& cells = t_.target.wanted;
         std::vector<Vec2> tried;
+        Worth now = worth_of_stroke(fitted.stations);
         while (tried.size() < kMostKnuckles) {
-            const stroke::StrokeSamples trace = samples_of(fitted.stations, hand_, pace_);
-            const stroke::PlaneInk ink = drawing_.draw(trace);
-            std::vector<EdgeTurn> knuckles = seen_knuckles(t_.whole, wanted_turns_, coverage_by(ink, cells));
-            std::erase_if(knuckles, [&](const EdgeTurn& k) {
+            std::vector<EdgeTurn> left = now.knuckles;
+            std::erase_if(left, [&](const EdgeTurn& k) {
                 return std::ranges::any_of(tried, [&](const Vec2& p) { return is_same(p, k); });
             });
-            if (knuckles.empty()) return;
-            at_ = std::ranges::max_element(knuckles, {}, [](const EdgeTurn& k) { return std::abs(k.curvature); })->at;
+            if (left.empty()) return;
+            at_ = std::ranges::max_element(left, {}, [](const EdgeTurn& k) { return std::abs(k.curvature); })->at;
             tried.push_back(at_);
             const Part part(fitted.stations, at_);
-            const double from = part.begin(trace);
-            rest_ = coverage_but(ink, cells, hand_.unit, from, part.end(trace));
-            drawing_.keep(trace, from);
-            const Drawn best = search(part);
-            if (best.change == Change{}) continue;
-            fitted.stations = part.changed(best.change);
-            fitted.iou = best.reached.iou, fitted.score = best.reached.score;
+            keep_rest(part, fitted.stations);
+            const Change best = search(part);
+            if (best == Change{}) continue;
+            std::vector<Station> next = part.changed(best);
+            Worth after = worth_of_stroke(next);
+            if (!(after.value > now.value)) continue;  // what follows the part is bent otherwise
+            fitted.stations = std::move(next);
+            fitted.iou = after.reached.iou, fitted.score = after.reached.score;
+            now = std::move(after);
         }
     }
 
   private:
     static bool is_same(const Vec2& p, const EdgeTurn& knuckle) { return glm::distance(p, knuckle.at) < kSameKnuckle; }
 
-    Drawn drawn(const Part& part, const Change& change) {
-        check_interrupt();
-        const stroke::StrokeSamples trace = samples_of(part.changed(change), hand_, pace_);
-        std::vector<float> coverage = coverage_by(drawing_.draw_part(trace, part.end(trace)), t_.target.wanted);
-        for (std::size_t i = 0; i < coverage.size(); ++i) coverage[i] = std::max(coverage[i], rest_[i]);
-        const std::vector<EdgeTurn> knuckles = seen_knuckles(t_.whole, wanted_turns_, coverage);
-        Drawn out{.change = change, .reached = score_of(t_.target, t_.depths, coverage)};
-        out.value = out.reached.score - kKnucklePrice * sharpness_of(knuckles);
-        out.smooth = std::ranges::none_of(knuckles, [&](const EdgeTurn& k) { return is_same(at_, k); });
+    Worth worth_of(const std::vector<float>& coverage) const {
+        Worth out{.reached = score_of(t_.target, t_.depths, coverage),
+                  .knuckles = seen_knuckles(t_.whole, wanted_turns_, coverage)};
+        out.value = out.reached.score - kKnucklePrice * sharpness_of(out.knuckles);
         return out;
     }
 
-    Drawn search(const Part& part) {
-        Drawn best = drawn(part, {});
+    Worth worth_of_stroke(const std::vector<Station>& stations) {
+        return worth_of(coverage_by(drawing_.draw(samples_of(stations, hand_, pace_)), t_.target.wanted));
+    }
+
+    /// Bends the tuft up to a part, and keeps what is inked before and after it.
+    void keep_rest(const Part& part, const std::vector<Station>& stations) {
+        const Cells& cells = t_.target.wanted;
+        const stroke::StrokeSamples trace = samples_of(stations, hand_, pace_);
+        const double from = part.begin(trace), until = part.end(trace);
+        rest_ = coverage_before(drawing_.draw(trace), cells, hand_.unit, from);
+        if (std::isfinite(until)) {
+            drawing_.keep(trace, until);
+            add_coverage(rest_, coverage_by(drawing_.draw_part(trace, trace.samples.back().time + 1), cells));
+        }
+        drawing_.keep(trace, from);
+    }
+
+    Worth worth_of_part(const Part& part, const Change& change) {
+        check_interrupt();
+        const stroke::StrokeSamples trace = samples_of(part.changed(change), hand_, pace_);
+        std::vector<float> coverage = coverage_by(drawing_.draw_part(trace, part.end(trace)), t_.target.wanted);
+        add_coverage(coverage, rest_);
+        return worth_of(coverage);
+    }
+
+    Change search(const Part& part) {
+        Change best{};
+        Worth worth = worth_of_part(part, best);
         double step = kFirstChange;
-        for (int round = 0; round < kSearchRounds && !best.smooth; ++round, step *= 0.5)
-            for (std::size_t k = 0; k < kNumbers; ++k)
+        const auto has_knuckle = [&] {
+            return std::ranges::any_of(worth.knuckles, [&](const EdgeTurn& k) { return is_same(at_, k); });
+        };
+        for (int round = 0; round < kSearchRounds && has_knuckle(); ++round, step *= 0.5)
+            for (std::size_t k = 0; k < best.size(); ++k)
                 for (const double sign : {1.0, -1.0}) {
-                    Change next = best.change;
+                    Change next = best;
                     next[k] += sign * step;
-                    const Drawn own = drawn(part, next);
-                    if (!(own.value > best.value)) continue;
-                    best = own;
+                    Worth own = worth_of_part(part, next);
+                    if (!(own.value > worth.value)) continue;
+                    best = next, worth = std::move(own);
                     break;
                 }
         return best;
@@ -167,8 +188,8 @@ class KnuckleFit {
     const Pace& pace_;
     stroke::PlaneDrawing drawing_;
     std::vector<EdgeTurn> wanted_turns_;
-    std::vector<float> rest_;
-    Vec2 at_{0};
+    std::vector<float> rest_;  // coverage by what is not drawn again
+    Vec2 at_{0};               // the knuckle
 };
 
 }  // namespace

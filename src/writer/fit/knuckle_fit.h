@@ -18,15 +18,16 @@ struct KnuckleTarget {
 
 /// Takes knuckles off, at most four, the sharpest first.
 ///
-/// About the station c that is nearest to a knuckle, or about the first where it is within 60 units of that, six
-/// numbers change the path within 48 units of c. With s the length from c, w = max(0, 1 − |s| / 48) and
-/// u = ±4 w (1 − w), negative before c,
+/// About the station m that is nearest to a knuckle, or about the first where it is within 60 units of that, six
+/// numbers change the path within 48 units of m. With s the length from m, w = max(0, 1 − |s| / 48) and
+/// u = ±4 w (1 − w), negative before m,
 ///
-///     centre += (w² a + u d) left + (w² b + u e) ahead,   half += w² f + u g  (d, e, g turn and a, b, f move it; a dot
+///     centre += (w² a + u b) left + (w² c + u d) ahead,   half += w² e + u f.
 ///
-/// Compass search over the six, steps of 4, 2 and 1 units, for the largest score less 0.003 times `sharpness_of`. Only
-/// the part of the stroke from 24 units before the change to 60 after it is drawn: the tuft is bent up to there once.
-/// Cost: about 25 such drawings a knuckle, 5 ms each. Deterministic.
+/// Compass search over the six, steps of 4, 2 and 1 units, for the largest score less 0.0015 times `sharpness_of`; it
+/// ends with the round in which the knuckle is gone. Only the part of the stroke from 16 units before the change to 40
+/// after it is drawn anew: the tuft is bent up to there once. A change that makes the whole stroke no better is not
+/// taken. Cost: about 30 such drawings a knuckle, 5 ms each. Deterministic.
 void take_off_knuckles(FitResult& fitted, const KnuckleTarget& target, const BrushHand& hand, const Pace& pace,
                        const FitOptions& options);
 

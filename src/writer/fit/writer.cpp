@@ -278,8 +278,8 @@ std::vector<WrittenStroke> Writer::filled(const Glyph& glyph) const {
         out.push_back(std::move(s));
     }
     if (out.empty() && has_ink(glyph.area))
-        throw Error(Message("the outline of {} is too large or too intricate to be filled with a brush",
-                            utf8_of(glyph.code)));
+        throw Error(
+            Message("the outline of {} is too large or too intricate to be filled with a brush", utf8_of(glyph.code)));
     return out;
 }
 

@@ -42,7 +42,8 @@ class Writer {
 
     /// Returns the strokes of each glyph, in order. Strokes are fitted in parallel; the result does not depend on the
     /// number of threads. Throws `Error` where the brush's finest line is wider than a quarter of a character that it
-    /// is to write, and for a filled character with more edges than `io::area_lines` takes. Cost: about 0.2 s a stroke; none for strokes in the cache.
+    /// is to write, and for a filled character with more edges than `io::area_lines` takes. Cost: about 0.2 s a stroke;
+    /// none for strokes in the cache.
     std::vector<std::vector<WrittenStroke>> write(const std::vector<Glyph>& glyphs, const ProgressFn& progress = {});
 
     const std::string& brush() const { return brush_; }
