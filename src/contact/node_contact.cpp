@@ -20,8 +20,9 @@ Vec3 plane_normal(const mesh::SurfacePoint& q, double side, const Vec3& off, dou
     if (d <= lift) return n;
     const Vec3 direction = off / d;
     const double cosine = glm::dot(direction, n);
-    constexpr double kAlike = 0.985, kApart = 0.90;  // 10° and 26°
-    const double w = smooth_step((kAlike - cosine) / (kAlike - kApart)) * smooth_step((d - lift) / (4 * lift));
+    constexpr double kNearlySame = 0.985, kApart = 0.90;  // 10° and 26°
+    const double w =
+        smooth_step((kNearlySame - cosine) / (kNearlySame - kApart)) * smooth_step((d - lift) / (4 * lift));
     if (w <= 0 || cosine < -0.5) return n;
     return glm::normalize((1 - w) * n + w * direction);
 }
