@@ -13,7 +13,6 @@
 #include "ink/film/film_step.h"
 #include "ink/film/film_worker.h"
 #include "ink/film/seepage.h"
-#include "ink/film/still_air.h"
 #include "ink/film/tension.h"
 #include "ink/film/tile/paste.h"
 #include "ink/texels/drying.h"
@@ -86,7 +85,6 @@ struct WetFilm::State : TileList {
     std::vector<std::uint32_t> part_order;  ///< of `order` what a step in parts, or by tension, goes through
     Tension tension;
     Seepage seepage;
-    StillAir air;
     LevelSteps level_steps;
     bool seeps = false;  ///< the step in work is one through the pores
     std::mutex mutex;
@@ -250,7 +248,7 @@ struct WetFilm::State : TileList {
         give(tile.s, worker.spare[1]);
         std::array<std::uint8_t, kTexels> closing;
         ahead.fetch(kLines);
-        tile.outcome = local_step({tile.w->data(), tile.s->data(), closing, air.of(tile.slot)}, work, g, step, seed);
+        tile.outcome = local_step({tile.w->data(), tile.s->data(), closing}, work, g, step, seed);
         if (tile.outcome.closing) {
             if (!tile.closing) tile.closing = std::make_unique<std::array<std::uint8_t, kTexels>>();
             *tile.closing = closing;
@@ -527,7 +525,6 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     s.forget_relief();
     s.tension.start(params, s.map);
     s.seepage.start(params);
-    s.air.start(params, s.map);
     s.set_unevenness(params.unevenness, params.pores.retention);  // fibres sieve
     s.begin(canvas);
     double beads = 0;  // seconds that they have not run yet
@@ -535,8 +532,6 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     // A long wait ends with what is level; how it became so needs not be followed at every moment.
     s.level_steps.least = std::clamp(kPartOfWait * seconds, kLevelStep, kLeastOfLongWait);
     s.level_steps.seconds = s.level_steps.least;
-    double air_known_for = 0;                    // seconds
-    double undried = params.drying.undried;      // seconds in which nothing has dried yet
     double rippled = params.ripples.unlevelled;  // seconds in which ripples have not levelled yet
     for (double left = seconds; left > 0 && !s.list.empty();) {
         if (progress && !progress("drying", 1 - left / seconds)) {
@@ -544,15 +539,8 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
             throw Cancelled();
         }
         if (s.sources.empty()) s.prepare(canvas);
-        if (params.drying.dries && s.air.is_used() && !(air_known_for > 0)) {
-            s.air.find(s, s.sources);
-            air_known_for = StillAir::kSeconds * s.air.slower();
-        }
-        StepChoice chosen = choose_step(params, s, {s.any_relief, running, s.air.slower()}, left);
+        StepChoice chosen = choose_step(params, s, s.map.texel_size, s.any_relief, running, left);
         const double dt = chosen.dt;
-        s.air.slow_down(chosen.step, params.drying.dries ? (dt + undried) / dt : 0);
-        if (params.drying.dries) undried = 0;
-        air_known_for -= dt;
         left = dt < left * (1 - 1e-9) ? left - dt : 0;
         rippled += dt;
         const bool level = params.ripples.tension > 0 && params.ripples.level &&

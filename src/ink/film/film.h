@@ -54,8 +54,7 @@ struct FilmReport {
 /// 40 % over about a millimetre, since surfaces are not clean. With a direction of gravity, contact lines preserve
 /// mounds (L = 0), and the excess runs down in beads (drips.h), at most 256 at once. The rim evaporates faster, by
 /// `rim_evaporation` |∇ min(T, rim_depth)| / rim_depth: the same per metre of rim for any texel size. This draws
-/// liquid and pigment there: dark edges. All of that is multiplied by what still air takes up (still_air.h), 1 / R as
-/// much from a spot of radius R. A texel without liquid is closed (drying.h). With `unevenness` D and D₀ vary
+/// liquid and pigment there: dark edges. A texel without liquid is closed (drying.h). With `unevenness` D and D₀ vary
 /// in clouds of about a millimetre and, as far as pores retain pigments, along fibres (fibres.h): fronts feather.
 ///
 /// Seams. Beside seams, texels are cells that tile the surface together with those of the other chart

@@ -17,8 +17,8 @@ void FilmClock::pass(double seconds) {
 void FilmClock::step(bool ends) {
     if (!wet_.film) return;
     ink::FilmParams params = wet_.params;
-    params.ripples.unlevelled = params.drying.undried = unlevelled_;
-    params.ripples.level = params.drying.dries = ends || unlevelled_ + behind_ >= kLevelEvery;
+    params.ripples.unlevelled = unlevelled_;
+    params.ripples.level = ends || unlevelled_ + behind_ >= kLevelEvery;
     wet_.film->advance(
         target_.canvas(), behind_, params, [this](std::uint32_t slot) { target_.snapshot(slot); }, progress_);
     unlevelled_ = params.ripples.level ? 0 : unlevelled_ + behind_;

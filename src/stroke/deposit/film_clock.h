@@ -15,9 +15,8 @@ struct WetFilmInUse {
     ink::FilmParams params;
 };
 
-/// Advances the film with the time of a stroke, in steps of at least 50 ms; its ripples level, and it dries, every 250
-/// ms and when the stroke ends, since a solve for all of it costs as much as several steps. Without a film it does
-/// nothing.
+/// Advances the film with the time of a stroke, in steps of at least 50 ms; its ripples level every 250 ms and when the
+/// stroke ends, since a solve for all of them costs as much as several steps. Without a film it does nothing.
 class FilmClock {
   public:
     FilmClock(StampTarget& target, const WetFilmInUse& wet, ProgressFn progress)
@@ -35,7 +34,7 @@ class FilmClock {
     WetFilmInUse wet_;
     ProgressFn progress_;
     double behind_ = 0;      // seconds
-    double unlevelled_ = 0;  // seconds in which ripples have not levelled yet, and nothing has dried
+    double unlevelled_ = 0;  // seconds in which ripples have not levelled yet
 };
 
 }  // namespace tuft::stroke

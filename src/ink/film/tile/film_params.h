@@ -30,11 +30,6 @@ struct FilmDrying {
     double rim_evaporation = 0;     ///< film units · m per second, additional, per metre of rim
     double rim_depth = 1;           ///< film units: rims are thinner than this
     double stain = 0;               ///< fraction of a drying film that soaks into bare substrate
-    /// D (c_s − c_∞) / ρ over a film unit, film · m/s: still air takes up 4 R of it from a spot of radius R, see
-    /// still_air.h. 0: the rates hold everywhere.
-    double vapour = 0;
-    bool dries = true;   ///< in this call; false: the caller counts the time, see `undried`
-    double undried = 0;  ///< s before this call in which nothing has dried yet
 };
 
 /// Levelling of ripples by surface tension.
