@@ -21,7 +21,7 @@ namespace {
 constexpr double kLevel = 0.3;          // tangential part of "up" below which a panel is level
 constexpr double kBetween = 0.002;      // metres, least distance of two pieces' prints
 constexpr double kLeastSide = 0.010;    // metres
-constexpr double kHardlyLonger = 1.02;  // of a roll, that pieces may take to stand upright
+constexpr double kHardlyMore = 1.2;     // of a page's height, that pieces may take to stand upright
 constexpr double kStrainPixel = 5e-4;   // metres, of strain maps
 constexpr double kFragment = 0.01;      // of the paint of the piece beyond the seam
 constexpr double kSpeck = 0.1;          // of `least_fragment`
@@ -263,11 +263,11 @@ struct Layout {
     std::vector<std::vector<Footprint>> footprints;  // [n_pieces] in the orientations that a piece may take
     std::vector<NestPlace> places;                   // [n_pieces]
     std::size_t pages = 0;
-    double used = 0;  // metres of a roll
+    double used = 0;  // metres of the last page's height, or of a roll
     bool fits = true;
 
-    bool takes_no_more_than(const Layout& other) const {
-        return fits && other.fits && pages <= other.pages && used <= kHardlyLonger * other.used;
+    bool takes_hardly_more_than(const Layout& other) const {
+        return fits && other.fits && pages <= other.pages && (pages < other.pages || used <= kHardlyMore * other.used);
     }
 };
 
@@ -285,10 +285,11 @@ Layout lay_out(const std::vector<Piece>& pieces, const SheetOptions& options, bo
         layout.fits &= place.fits;
         if (!place.fits) continue;
         layout.pages = std::max(layout.pages, place.page + 1);
-        if (options.page.y == 0)
+    }
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        if (const NestPlace& place = layout.places[i]; place.fits && place.page + 1 == layout.pages)
             for (const Vec2& p : items[i].shapes[place.orientation])
                 layout.used = std::max(layout.used, p.y + place.offset.y);
-    }
     return layout;
 }
 
@@ -296,7 +297,7 @@ Layout lay_out(const std::vector<Piece>& pieces, const SheetOptions& options, bo
 std::vector<Vec2> place_pieces(std::vector<Piece>& pieces, const SheetOptions& options, std::vector<Page>& pages) {
     Layout layout = lay_out(pieces, options, options.upright);
     if (!options.upright)
-        if (Layout upright = lay_out(pieces, options, true); upright.takes_no_more_than(layout))
+        if (Layout upright = lay_out(pieces, options, true); upright.takes_hardly_more_than(layout))
             layout = std::move(upright);
     std::vector<Vec2> labels;
     for (std::size_t i = 0; i < pieces.size(); ++i) {

@@ -98,7 +98,7 @@ struct SheetOptions {
     double least_fragment = 1e-5;  ///< m² of paint; see `make_sheet`
     double least_piece = 0;        ///< the same, of slivers; 0: all are laid
     Vec2 page{0.21, 0.297};        ///< metres; height 0: a roll
-    bool upright = false;          ///< all pieces with their arrow up the page; else where that takes no more film
+    bool upright = false;          ///< all pieces with their arrow up the page; else where that takes hardly more film
     double pixel = 0.0254 / 300;   ///< metres
     bool strain_map = false;       ///< appends a page of strain for each page of film
     bool prints = true;            ///< makes pictures; else lines only

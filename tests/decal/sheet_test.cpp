@@ -295,22 +295,28 @@ TEST_F(SheetOfFormula, NumbersMarksAndScaleBarStandOnThePage) {
     EXPECT_NEAR(scale, 50 * kMm, 1e-9);
 }
 
-// A person who lays pieces reads them upright; on a page too narrow for that they are turned.
-TEST_F(SheetOfFormula, PiecesStandUprightWhereThatTakesNoMoreFilm) {
+// A person who lays pieces reads them upright. A long bar that slants would take four times the film, and is turned.
+TEST_F(SheetOfFormula, PiecesStandUprightWhereThatTakesHardlyMoreFilm) {
     const mesh::TriangleMesh model =
         test::grid_mesh(60, 60, false, false, [](double u, double v) { return Vec3(0.2 * u, 0.2 * v, 0); });
-    const auto slanted = [](const Vec3& p) {
-        const double along = 0.8 * (p.x - 0.1) + 0.6 * (p.y - 0.1), across = 0.8 * (p.y - 0.1) - 0.6 * (p.x - 0.1);
-        return std::abs(along) < 0.08 && std::abs(across) < 0.01;
+    const auto along = [](const Vec3& p, double turn) {
+        return std::cos(turn) * (p.x - 0.1) + std::sin(turn) * (p.y - 0.1);
     };
-    const auto lean = [&](const Vec2& page) {
-        const Sheet made = sheet(model, slanted, {.page = page});
+    const auto lean = [&](const auto& painted) {
+        const Sheet made = sheet(model, painted, {});
         EXPECT_EQ(made.pieces.size(), 1u);
         const Piece& piece = made.pieces[0];
         return std::abs(piece.placement.c * piece.up.x - piece.placement.s * piece.up.y);
     };
-    EXPECT_LT(lean({0.21, 0.297}), 1e-6);
-    EXPECT_GT(lean({0.1, 0.297}), 0.1);  // 143 mm wide as it stands
+    const double third = 2 * test::kPi / 3;
+    EXPECT_LT(lean([&](const Vec3& p) {  // a triangle of equal sides, 20 degrees askew
+                  return std::max({along(p, 0.35), along(p, 0.35 + third), along(p, 0.35 - third)}) < 0.02;
+              }),
+              1e-6);
+    EXPECT_GT(lean([&](const Vec3& p) {
+                  return std::abs(along(p, 0.6)) < 0.08 && std::abs(along(p, 0.6 + test::kPi / 2)) < 0.01;
+              }),
+              0.1);
 }
 
 // On a map of strain the foot names the map, and is as whole on A3 as on a page with more room.
