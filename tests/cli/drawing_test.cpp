@@ -142,6 +142,28 @@ TEST_F(Drawing, WrapsRoundAnEdgeWhereItIsAsked) {
     EXPECT_NEAR(ink("--place 20,0,60 --edges cut") / whole, 0.75, 0.02);
 }
 
+// Two plates, one 30 mm over the other: a cut drawing stays on the one that its middle lies on, and says what it
+// leaves.
+TEST_F(Drawing, SaysWhatACutLeavesBare) {
+    write("plates.obj",
+          "v -60 -30 0\nv 0 -30 0\nv 0 30 0\nv -60 30 0\nv 10 -30 -30\nv 60 -30 -30\nv 60 30 -30\nv 10 30 -30\n"
+          "f 1 2 3 4\nf 5 6 7 8\n");
+    write("two.svg",
+          "<svg width='100mm' viewBox='0 0 100 10'><rect width='60' height='10' fill='#c8402a'/>"
+          "<rect x='75' width='20' height='10' fill='#c8402a'/></svg>");
+    const auto err = [&](const std::string& more) {
+        const Ran ran = tuft("paint " + path("plates.obj") + " --unit mm --atlas-size 512 --strokes " +
+                             path("two.svg") + " --place=-8,0,0 --mapping project --read-from top " + more);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        return ran.err;
+    };
+    EXPECT_NE(err("--edges cut")
+                  .find("1 area covers no texel of the model that is connected with the middle of the "
+                        "drawing, where --edges cut begins"),
+              std::string::npos);
+    EXPECT_EQ(err("").find("no texel"), std::string::npos);
+}
+
 TEST_F(Drawing, SnapsToTheMiddlePlaneOfTheModel) {
     const json at = paint("--strokes " + path("a.svg") + " --place 7,20,0 --snap x")["placed"]["at_mm"];
     EXPECT_NEAR(double(at[0]), 0, 1e-6);

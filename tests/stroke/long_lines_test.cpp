@@ -107,6 +107,22 @@ TEST(LongLines, ALineIsAsFullAtItsEndAsAtItsBeginning) {
     EXPECT_LT(dry.width[dry.width.size() - 4], 0.5 * kWidth);
 }
 
+TEST(LongLines, TheFilmOfAnInkIsLookedUpOnceForADrawing) {
+    const PaintStroke black{.trace = serpentine(1), .brush = "", .ink = "carbon"};
+    PaintStroke red = black;
+    red.ink = "cinnabar";
+    std::vector<JournalEntry> entries{black, red, black, red, black};
+    const std::vector<StrokeSamples*> drawing = drawing_in(entries, true);
+    std::vector<std::string> asked;
+    const BrushFit fit{.film = [&](const std::string& ink) { return asked.push_back(ink), 1e-5; }};
+    WidthTables widths;
+    choose_brushes(entries, drawing, 1, 0.05, fit, widths);
+    EXPECT_EQ(asked.size(), 2u) << "for five lines of two inks";
+    asked.clear();
+    redip_long_lines(entries, fit, widths);
+    EXPECT_EQ(asked.size(), 2u);
+}
+
 TEST(LongLines, ABrushThatNeverRunsDryNeedsNoSecondDip) {
     const Drawn line = drawn(serpentine(6), true, "", "titanium-white", true);
     ASSERT_EQ(line.reports.size(), 1u);

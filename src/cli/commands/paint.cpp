@@ -243,10 +243,16 @@ Painted paint_strokes(const std::vector<stroke::JournalEntry>& strokes, stroke::
     return out;
 }
 
-void note_missed_areas(const Painted& painted, Console& console) {
-    if (const std::size_t missed = painted.areas - painted.areas_met; missed > 0)
-        console.note(fmt::format("warning: {} {} no texel of the model", counted(missed, "area"),
-                                 missed == 1 ? "covers" : "cover"));
+void note_missed_areas(const Painted& painted, const Paint& a, Console& console) {
+    const std::size_t missed = painted.areas - painted.areas_met;
+    if (missed == 0) return;
+    const bool cut = edges_of(a) == stroke::AreaEdges::cut;
+    console.note(fmt::format("warning: {} {} no texel of the model{}", counted(missed, "area"),
+                             missed == 1 ? "covers" : "cover",
+                             cut ? fmt::format(" that is connected with the middle of the drawing, where --edges {} "
+                                               "begins (see --place, --edges facing)",
+                                               a.place.edges)
+                                 : ""));
 }
 
 bool is_masked_or_erases(const stroke::JournalEntry& entry) {
@@ -325,7 +331,6 @@ bool writes_into_its_project(const Paint& a) {
 void note_painted(const Painted& painted, const std::vector<stroke::JournalEntry>& strokes,
                   const stroke::Document& painting, const stroke::Model& model, Console& console) {
     note_misses(painted.reports, painted.done, console);
-    note_missed_areas(painted, console);
     note_dry(painted.reports, console);
     note_locked(painted, strokes, painting.parts().table(), console);
     note_inside(painted.reports, painted.done, model.mesh->bounds, console);
@@ -427,6 +432,7 @@ int paint(const Paint& a, const StrokeSource& source) {
     Painted painted = paint_strokes(strokes, painting, project, a, console, start);
     painted.prepared = prepared;
     note_painted(painted, strokes, painting, model, console);
+    note_missed_areas(painted, a, console);
     show_layers(painting, a.view.layers);
     write_outputs(outputs, painting, console);
     write_forces(painted.reports, a.output.forces);
