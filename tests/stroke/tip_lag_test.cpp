@@ -11,8 +11,6 @@
 #include <map>
 #include <memory>
 #include <numbers>
-#include <string_view>
-#include <tuple>
 
 #include "brush/calibration/sweep.h"
 #include "core/ease.h"
@@ -489,64 +487,6 @@ TEST(TipLag, ADotOfAFilbertLiesWhereItIsSet) {
         const Vec3 off = test::ink_centre(painting, dot_at_origin({0, 0, 1}, preset.name, 0.3, pressed));
         EXPECT_LT(glm::length(Vec2(off)), 0.3e-3) << pressed;
     }
-}
-
-/// There and back on one line by a whole hand: least and greatest y of the ink within the way, and how far it reaches
-/// beyond both ends.
-struct ThereAndBack {
-    Span across;
-    double before = 0, behind = 0;  // metres
-};
-ThereAndBack there_and_back(const std::string& brush, double roll, double pressure, int samples, bool back) {
-    constexpr double kWay = 40e-3, kCell = 1e-4, kLands = 6e-3;
-    static WidthTables tables;
-    StrokeSamples trace;
-    const double whole = back ? 2 * kWay : kWay;
-    for (int i = 0; i <= samples * (back ? 2 : 1); ++i) {
-        const double gone = std::min(whole, i * kWay / samples), left = whole - gone;
-        trace.samples.push_back({.time = gone / 0.04,
-                                 .position = {gone <= kWay ? gone : whole - gone, 0, 0},
-                                 .pressure = pressure * std::min({1.0, gone / kLands, left / kLands}),
-                                 .roll = roll});
-    }
-    const PlaneInk ink = plane_ink(trace, brush::load_preset(brush), tables.holder(brush), 5e-4, kCell);
-    ThereAndBack out;
-    Span along;
-    for (double y = -0.02; y < 0.02; y += kCell)
-        for (double x = -0.01; x < 0.06; x += kCell)
-            if (ink.at({x, y}) > 0.5) {
-                out.across = {std::min(out.across.lo, y), std::max(out.across.hi, y)};
-                along = {std::min(along.lo, x), std::max(along.hi, x)};
-            }
-    out.before = -along.lo, out.behind = along.hi - kWay;
-    return out;
-}
-
-// Hair that was pushed before the hand lay on ahead of it, fell along its row after 20 to 40 mm and left a spike 12 mm
-// high beside a flat's stroke.
-TEST(TipLag, AWideBrushThatTurnsBackStaysOnItsStroke) {
-    for (const auto& [brush, roll, pressure] : {std::tuple{"flat-12", 0.5 * std::numbers::pi, 0.4},
-                                                {"filbert-12", 0.5 * std::numbers::pi, 0.4},
-                                                {"hake-60*0.25", 0.5 * std::numbers::pi, 0.4},
-                                                {"sword-8", 0.0, 0.15}}) {
-        SCOPED_TRACE(brush);
-        const ThereAndBack once = there_and_back(brush, roll, pressure, 400, false),
-                           twice = there_and_back(brush, roll, pressure, 400, true);
-        // The stripe of a blade, 0.5 mm, lies beside itself by up to 0.3 mm.
-        const double width = once.across.width();
-        EXPECT_LT(twice.across.width(), 1.05 * width + 4e-4);
-        EXPECT_NEAR(0.5 * (twice.across.lo + twice.across.hi), 0, 0.03 * width + 2e-4);
-        // Of the hair of a blade, 50 mm, and of the others, 8 to 26 mm, that much may touch beyond the turn.
-        EXPECT_NEAR(twice.behind, 0, std::string_view(brush) == "sword-8" ? 7e-3 : 4e-3);
-    }
-}
-
-TEST(TipLag, ATurnBackIsTheSameForAnySamples) {
-    const ThereAndBack many = there_and_back("flat-12", 0.5 * std::numbers::pi, 0.4, 800, true),
-                       few = there_and_back("flat-12", 0.5 * std::numbers::pi, 0.4, 20, true);
-    // Cells of 0.1 mm; where few samples lie the hand lands 2 mm apart.
-    EXPECT_NEAR(many.across.width(), few.across.width(), 3e-4);
-    EXPECT_NEAR(many.behind, few.behind, 3e-4);
 }
 
 // A flat's dot is 2 to 5 mm thick: 0.3 mm, as of round brushes, is not seen.

@@ -119,7 +119,8 @@ PlaneDrawing::PlaneDrawing(const brush::Preset& preset, const HolderOptions& hol
 
 std::vector<brush::Pose> PlaneDrawing::poses_of(const StrokeSamples& trace) const {
     std::vector<brush::Pose> samples;
-    const StrokeSamples led = lift_off(compensate_tip_lag(lean_holder(trace, hold_), hold_), hold_);
+    const StrokeSamples led =
+        lift_off(compensate_tip_lag(lean_holder(add_turn_samples(trace, hold_), hold_), hold_), hold_);
     const std::vector<double> depths = tip_depths<StrokeSample>(led.samples, hold_);
     for (std::size_t i = 0; i < led.samples.size(); ++i) {
         const StrokeSample& s = led.samples[i];

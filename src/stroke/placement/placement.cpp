@@ -195,8 +195,9 @@ void lift_off_sheet(const std::vector<bool>& left, std::span<SurfaceSample> mapp
 
 }  // namespace
 
-HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& trace, const HolderOptions& options) {
-    if (!trace.flat) return {{}, spatial_poses(trace), 0};
+HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& samples, const HolderOptions& options) {
+    if (!samples.flat) return {{}, spatial_poses(samples), 0};
+    const StrokeSamples trace = add_turn_samples(samples, options);
     // The mapped samples are where the ink is to be: over a hollow, the surface ahead leans otherwise.
     const StrokeSamples led = compensate_tip_lag(lean_holder(trace, options), options);
     HandPath path;

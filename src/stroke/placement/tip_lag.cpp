@@ -362,6 +362,7 @@ Vec2 dot_direction(const StrokeSample& first, const HolderOptions& options) {
 constexpr double kCutsOfString = 6;  // pieces of its length, into which the path is cut where a string is slack
 constexpr double kLifted = 0.4;      // of the string's length: at a turn back the hair is in the air below it
 constexpr double kLeansOver = 0.9;   // of it: the hand begins to lean over to the other side
+constexpr double kTurnsOnly = 0.6, kTurnsBack = 0.3;  // of it: least length in a turn that lifts no hair, and all of it
 
 StrokeSample between(const StrokeSample& a, const StrokeSample& b, double f) {
     StrokeSample s = a;
@@ -373,9 +374,123 @@ StrokeSample between(const StrokeSample& a, const StrokeSample& b, double f) {
     return s;
 }
 
-/// Adds samples where the hand comes round: while its string, of length `tip_lag_turn`, is slack. `ahead`: as in
-/// `trace_direction`.
-StrokeSamples cut_turns(const StrokeSamples& trace, const HolderOptions& options, const Vec2& ahead) {
+/// Whether the hand lifts a brush where it turns back and sets it down to the other side: a wide ferrule. Hair that is
+/// pushed before the hand lies on ahead of it for centimetres, then falls along its row. The ink of that place is
+/// there.
+bool is_lifted_at_turns(const HolderOptions& options) {
+    return options.across || options.turned || options.blade_landing > 0;
+}
+
+constexpr double kOtherSide = 0.5;  // sine of the path's turn to the broad side from which on hair lies on that side
+constexpr double kComesOver =
+    0.5;  // of the tuft's length, path before and after it stands up within which it is lifted
+constexpr double kJustTouches = 0.04;  // of the pressure, with which it stands up
+
+/// Direction in which a trace sets out; zero of a dot, which does not leave its first place.
+Vec2 trace_direction(std::span<const StrokeSample> samples, const HolderOptions& options) {
+    return first_direction(samples, kAiming * options.tip_lag_turn);
+}
+bool is_dot(std::span<const StrokeSample> samples, const HolderOptions& options) {
+    return trace_direction(samples, options) == Vec2(0);
+}
+
+/// Where the hand is in a turn.
+struct Turning {
+    Vec2 towards{
+        0};  ///< from the end of a string of length `tip_lag_turn` to it, over that length; a unit vector ahead
+    double back = 0;  ///< 0–1: how much the path turns back there, and a wide brush is lifted
+};
+
+/// Turning at each sample. A path that turns by up to 106° keeps the hair down, one that turns by 145° or more lifts
+/// it: the string becomes as short as the cosine of half the turn. `ahead`: direction in which the trace sets out.
+std::vector<Turning> turnings_of(std::span<const StrokeSample> samples, const HolderOptions& options,
+                                 const Vec2& ahead) {
+    std::vector<Turning> out;
+    const double string = options.tip_lag_turn;
+    Vec2 before(samples.front().position), dragged = before - string * ahead;
+    for (const StrokeSample& s : samples) {
+        const Vec2 p(s.position);
+        dragged = drag_string(dragged, before, p, string);
+        before = p;
+        out.push_back({.towards = (p - dragged) / string});
+    }
+    if (options.tip_lag.empty() || !is_lifted_at_turns(options) || is_dot(samples, options)) return out;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        double least = 1;
+        std::size_t end = i;
+        for (; end < out.size() && glm::length(out[end].towards) < 1 - 1e-9; ++end)
+            least = std::min(least, glm::length(out[end].towards));
+        const double back = smooth_step((kTurnsOnly - least) / (kTurnsOnly - kTurnsBack));
+        for (; i < end; ++i) out[i].back = back;
+    }
+    return out;
+}
+
+/// Lifts hair that bends across its broad side only where it comes over from one side to the other, in a turn of the
+/// path, until it just touches: pressed, its flanks stay on the old side while its middle goes on. `ahead`: as in
+/// `cut_turns`.
+void lift_to_other_side(StrokeSamples& trace, const HolderOptions& options, const Vec2& ahead) {
+    const std::vector<double> along = travelled<StrokeSample>(trace.samples);
+    std::vector<double> side;  // sine, by sample
+    Vec2 before(trace.samples.front().position), dragged = before - options.tip_lag_turn * ahead;
+    for (const StrokeSample& s : trace.samples) {
+        const Vec2 p(s.position);
+        dragged = drag_string(dragged, before, p, options.tip_lag_turn);
+        before = p;
+        const Vec2 towards = p - dragged;
+        const double taut = glm::length(towards);
+        side.push_back(taut > 0 ? glm::dot(towards, across_of(s.roll)) / taut : 0);
+    }
+    std::size_t lies = side.size();  // last sample that lies on a side
+    for (std::size_t i = 0; i < side.size(); ++i) {
+        if (std::abs(side[i]) < kOtherSide) continue;
+        if (lies < i && side[lies] * side[i] < 0) {
+            std::size_t stands = lies;
+            while (side[stands] * side[lies] > 0) ++stands;
+            for (std::size_t k = lies; k < i; ++k) {
+                const double off = std::abs(along[k] - along[stands]) / (kComesOver * options.tuft_length);
+                const double part = std::max(smooth_step(std::abs(side[k]) / kOtherSide), smooth_step(off));
+                trace.samples[k].pressure *= std::lerp(kJustTouches, 1.0, part);
+            }
+        }
+        lies = i;
+    }
+}
+
+/// Direction in which a hand sets out.
+Vec2 initial_direction(std::span<const StrokeSample> samples, const HolderOptions& options) {
+    const Vec2 ahead = trace_direction(samples, options);
+    return ahead != Vec2(0) ? ahead : dot_direction(samples.front(), options);
+}
+
+}  // namespace
+
+StrokeSamples lean_holder(StrokeSamples trace, const HolderOptions& options) {
+    if (!(options.lean > 0) || !trace.flat || trace.samples.empty()) return trace;
+    if (std::ranges::any_of(trace.samples, [](const StrokeSample& s) { return s.tilt != Vec2(0); })) return trace;
+    const double string = lean_string(options);
+    const Vec2 ahead = initial_direction(trace.samples, options);
+    const std::vector<Turning> turning = turnings_of(trace.samples, options, ahead);
+    Vec2 before(trace.samples.front().position), dragged = before - string * ahead;
+    for (std::size_t i = 0; i < trace.samples.size(); ++i) {
+        StrokeSample& s = trace.samples[i];
+        const Vec2 p(s.position);
+        dragged = drag_string(dragged, before, p, string);
+        before = p;
+        // Hair that is lifted is set down leaning to its other side.
+        const auto& [over, back] = turning[i];
+        const double taut = glm::length(over);
+        if (back >= 1 && taut < kLifted) dragged = p - string * over;
+        const double part = back * smooth_step((kLeansOver - taut) / (kLeansOver - kLifted));
+        s.tilt = lean_of_make(options, s.roll, glm::mix((p - dragged) / string, over, part));
+    }
+    return trace;
+}
+
+StrokeSamples add_turn_samples(const StrokeSamples& trace, const HolderOptions& options) {
+    if (options.tip_lag.empty() || trace.samples.empty() || !trace.flat || !is_lifted_at_turns(options)) return trace;
+    if (is_dot(trace.samples, options)) return trace;
+    const Vec2 ahead = initial_direction(trace.samples, options);
     StrokeSamples out = trace;
     out.samples.clear();
     const double string = options.tip_lag_turn;
@@ -396,52 +511,6 @@ StrokeSamples cut_turns(const StrokeSamples& trace, const HolderOptions& options
     return out;
 }
 
-/// Whether the hand lifts a brush where it turns back and sets it down to the other side: a wide ferrule. Hair that is
-/// pushed before the hand lies on ahead of it for centimetres, then falls along its row. The ink of that place is
-/// there.
-bool is_lifted_at_turns(const HolderOptions& options) {
-    return options.across || options.turned || options.blade_landing > 0;
-}
-
-/// Direction in which a trace sets out; zero of a dot, which does not leave its first place.
-Vec2 trace_direction(std::span<const StrokeSample> samples, const HolderOptions& options) {
-    return first_direction(samples, kAiming * options.tip_lag_turn);
-}
-bool is_dot(std::span<const StrokeSample> samples, const HolderOptions& options) {
-    return trace_direction(samples, options) == Vec2(0);
-}
-
-/// Direction in which a hand sets out.
-Vec2 initial_direction(std::span<const StrokeSample> samples, const HolderOptions& options) {
-    const Vec2 ahead = trace_direction(samples, options);
-    return ahead != Vec2(0) ? ahead : dot_direction(samples.front(), options);
-}
-
-}  // namespace
-
-StrokeSamples lean_holder(StrokeSamples trace, const HolderOptions& options) {
-    if (!(options.lean > 0) || !trace.flat || trace.samples.empty()) return trace;
-    if (std::ranges::any_of(trace.samples, [](const StrokeSample& s) { return s.tilt != Vec2(0); })) return trace;
-    const double string = lean_string(options), turn = options.tip_lag_turn;
-    const Vec2 ahead = initial_direction(trace.samples, options);
-    const bool lifts = is_lifted_at_turns(options) && !is_dot(trace.samples, options);
-    if (lifts) trace = cut_turns(trace, options, ahead);
-    Vec2 before(trace.samples.front().position), dragged = before - string * ahead, led = before - turn * ahead;
-    for (StrokeSample& s : trace.samples) {
-        const Vec2 p(s.position);
-        dragged = drag_string(dragged, before, p, string);
-        led = drag_string(led, before, p, turn);
-        before = p;
-        // Hair that is lifted is set down leaning to its other side.
-        const Vec2 over = (p - led) / turn;
-        const double taut = lifts ? glm::length(over) : 1;
-        if (taut < kLifted) dragged = p - string * over;
-        const double part = smooth_step((kLeansOver - taut) / (kLeansOver - kLifted));
-        s.tilt = lean_of_make(options, s.roll, glm::mix((p - dragged) / string, over, part));
-    }
-    return trace;
-}
-
 StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& options) {
     if (options.tip_lag.empty() || trace.samples.empty() || !trace.flat) return trace;
     // The hand knows where it is going to start: the string is taut from the first touch.
@@ -449,32 +518,33 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     const Vec2 ahead = initial_direction(trace.samples, options);
     const bool dot = is_dot(trace.samples, options);
     const Vec2 off = dot && options.dot_place ? options.dot_place(trace) : Vec2{0};
-    const bool lifts = !dot && is_lifted_at_turns(options);
-    if (lifts) trace = cut_turns(trace, options, ahead);
+    if (!dot && options.across) lift_to_other_side(trace, options, ahead);
     const bool pressed = set_down(trace, options, ahead, dot);
     set_down_plumb(trace, options);
     // Over a convex surface a blade's point meets a surface that falls ahead of it, however softly it lands: it would
     // slide on ahead of the hand and fall to its side.
     const bool leans = options.lean > kLean && glm::dot(trace.samples.front().tilt, ahead) > kLean;
     if ((pressed || dot || options.blade_landing > 0) && ahead != Vec2(0) && !leans) lean_ahead(trace, options, ahead);
-    Vec2 dragged = first - options.tip_lag_turn * ahead, before = first;
+    Vec2 before = first;
     FollowedTurn turn(options.tuft_length, trace.samples.front().roll - angle_of(ahead));
     BladeRoll blade(options.tip_lag_turn, trace.samples.front().roll);
     const double turn_leans = kLeanTurns * options.tip_lag_turn;
-    double since_turn = 1e9;  // metres
-    for (StrokeSample& s : trace.samples) {
+    double since_turn = 1e9, over = 0;  // metres; how much it turned back there
+    const std::vector<Turning> turning = turnings_of(trace.samples, options, ahead);
+    for (std::size_t i = 0; i < trace.samples.size(); ++i) {
+        StrokeSample& s = trace.samples[i];
         const Vec2 p(s.position);
-        dragged = drag_string(dragged, before, p, options.tip_lag_turn);
-        Vec2 towards = (p - dragged) / options.tip_lag_turn;
-        if (const double taut = glm::length(towards); lifts && taut < 1 - 1e-9) {
-            s.pressure *= smooth_step((taut - kLifted) / (1 - kLifted));
-            towards = taut > 1e-9 ? towards / taut : Vec2{0};
-            if (taut < kLifted) since_turn = 0;
-        }
-        const double gone = glm::distance(p, before);
+        const auto& [string, back] = turning[i];
+        const double taut = glm::length(string), gone = glm::distance(p, before);
+        Vec2 towards = string;
         since_turn += gone;
+        if (back > 0 && taut < 1 - 1e-9) {
+            s.pressure *= std::lerp(1.0, smooth_step((taut - kLifted) / (1 - kLifted)), back);
+            towards = glm::mix(string, taut > 1e-9 ? string / taut : Vec2{0}, back);
+            if (taut < kLifted) since_turn = 0, over = back;
+        }
         if (since_turn < turn_leans && !(options.lean > kLean))
-            s.tilt += kLean * (1 - smooth_step(since_turn / turn_leans)) * towards;
+            s.tilt += over * kLean * (1 - smooth_step(since_turn / turn_leans)) * towards;
         if (options.blade_landing > 0) {
             blade.follow(s.roll, gone);
             s.roll = blade.roll();

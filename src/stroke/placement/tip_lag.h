@@ -120,20 +120,25 @@ class FollowedTurn {
 inline constexpr double kSetDownPace = 1.5, kSlowestSetDown = 0.02;
 inline constexpr double kHoverTime = 0.05;  ///< seconds of the tip between the surface and `hover`
 
+/// Adds samples to a flat trace of a wide ferrule where the path turns back, so that `compensate_tip_lag` lifts and
+/// turns the hair there evenly, however far apart the samples lie. Called first; other traces do not change.
+StrokeSamples add_turn_samples(const StrokeSamples& trace, const HolderOptions& options);
+
 /// Compensates the tip lag of a flat trace: moves its samples ahead along the path by the tip lag at their depth and
 /// lean, so that the ink lies where the trace was.
 ///
 /// Ahead is the direction of a point dragged behind the trace on a string of length `tip_lag_turn` (a tractrix), taut
 /// from the first touch in the initial direction of the trace. A dot is set as a stroke begins: the tip touches, and
 /// the hand goes on as it presses, towards the side that the holder leans to, or to the right and down; of a wide
-/// ferrule across its broad side, of a blade along it. A sponge is pressed straight down. Then its middle lies where the trace
-/// was (`options.dot_place`), whichever way the surface leans. Pressed down plumb the hair would fall to any side.
-/// Where the path reverses, the tip lag passes through zero. A wide ferrule is lifted there and set down to its other
-/// side, with the ink up to the place where the path turns. A trace that begins pressed gets samples before its first
-/// one, at the same place and earlier in time, whose pressure rises to the first; the holder moves at `kSetDownPace`
-/// times the trace's speed, so that the tip touches first and trails. It leans ahead by 0.12 rad more, which fades over
-/// 4 `tip_lag_turn`; not where the lean of its make already tilts it ahead by more than that. A blade leans so at any
-/// landing, over `blade_landing` at least. It turns as late as the string (`BladeRoll`).
+/// ferrule across its broad side, of a blade along it. A sponge is pressed straight down. Then its middle lies where
+/// the trace was (`options.dot_place`), whichever way the surface leans. Pressed down plumb the hair would fall to any
+/// side. Where the path reverses, the tip lag passes through zero. A wide ferrule is lifted there and set down to its
+/// other side, with the ink up to the place where the path turns; a turn by up to 106° keeps it down. A trace that
+/// begins pressed gets samples before its first one, at the same place and earlier in time, whose pressure rises to the
+/// first; the holder moves at `kSetDownPace` times the trace's speed, so that the tip touches first and trails. It
+/// leans ahead by 0.12 rad more, which fades over 4 `tip_lag_turn`; not where the lean of its make already tilts it
+/// ahead by more than that. A blade leans so at any landing, over `blade_landing` at least. It turns as late as the
+/// string (`BladeRoll`).
 ///
 /// A holder upright to 0.05 rad sets the brush down plumb and reaches its lean within 0.3 lengths of the tuft.
 ///

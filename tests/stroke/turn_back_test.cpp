@@ -1,0 +1,176 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "core/text/units.h"
+#include "sheet.h"
+#include "stroke/drawing/line_width.h"
+#include "stroke/drawing/plane_ink.h"
+#include "stroke/placement/holder.h"
+#include "stroke/placement/placement.h"
+#include "stroke/placement/tip_lag.h"
+
+/// Wide brushes whose path turns back, or turns to their other broad side.
+namespace tuft::stroke {
+namespace {
+
+struct Extent {
+    double lo = 1, hi = -1;
+
+    double width() const { return hi - lo; }
+};
+
+/// There and back on one line by a whole hand: least and greatest y of the ink within the way, and how far it reaches
+/// beyond both ends.
+struct ThereAndBack {
+    Extent across;
+    double before = 0, behind = 0;  // metres
+};
+ThereAndBack there_and_back(const std::string& brush, double roll, double pressure, int samples, bool back) {
+    constexpr double kWay = 40e-3, kCell = 1e-4, kLands = 6e-3;
+    static WidthTables tables;
+    StrokeSamples trace;
+    const double whole = back ? 2 * kWay : kWay;
+    for (int i = 0; i <= samples * (back ? 2 : 1); ++i) {
+        const double gone = std::min(whole, i * kWay / samples), left = whole - gone;
+        trace.samples.push_back({.time = gone / 0.04,
+                                 .position = {gone <= kWay ? gone : whole - gone, 0, 0},
+                                 .pressure = pressure * std::min({1.0, gone / kLands, left / kLands}),
+                                 .roll = roll});
+    }
+    const PlaneInk ink = plane_ink(trace, brush::load_preset(brush), tables.holder(brush), 5e-4, kCell);
+    ThereAndBack out;
+    Extent along;
+    for (double y = -0.02; y < 0.02; y += kCell)
+        for (double x = -0.01; x < 0.06; x += kCell)
+            if (ink.at({x, y}) > 0.5) {
+                out.across = {std::min(out.across.lo, y), std::max(out.across.hi, y)};
+                along = {std::min(along.lo, x), std::max(along.hi, x)};
+            }
+    out.before = -along.lo, out.behind = along.hi - kWay;
+    return out;
+}
+
+// Hair that was pushed before the hand lay on ahead of it, fell along its row after 20 to 40 mm and left a spike 12 mm
+// high beside a flat's stroke.
+TEST(TurnBack, OfAWideBrushStaysOnItsStroke) {
+    for (const auto& [brush, roll, pressure] : {std::tuple{"flat-12", 0.5 * std::numbers::pi, 0.4},
+                                                {"filbert-12", 0.5 * std::numbers::pi, 0.4},
+                                                {"hake-60*0.25", 0.5 * std::numbers::pi, 0.4},
+                                                {"sword-8", 0.0, 0.15}}) {
+        SCOPED_TRACE(brush);
+        const ThereAndBack once = there_and_back(brush, roll, pressure, 400, false),
+                           twice = there_and_back(brush, roll, pressure, 400, true);
+        // The stripe of a blade, 0.5 mm, lies beside itself by up to 0.3 mm.
+        const double width = once.across.width();
+        EXPECT_LT(twice.across.width(), 1.05 * width + 4e-4);
+        EXPECT_NEAR(0.5 * (twice.across.lo + twice.across.hi), 0, 0.03 * width + 2e-4);
+        // Of the hair of a blade, 50 mm, and of the others, 8 to 26 mm, that much may touch beyond the turn.
+        EXPECT_NEAR(twice.behind, 0, std::string_view(brush) == "sword-8" ? 7e-3 : 4e-3);
+    }
+}
+
+/// How far ink lies from all discs of `radius` within the ink, at most, metres: the longest spike or thread beside a
+/// stroke.
+double longest_spike(const PlaneInk& ink, double half_width, double radius) {
+    constexpr double kCell = 3e-4;
+    const int n = static_cast<int>(2 * half_width / kCell), reach = static_cast<int>(std::round(radius / kCell));
+    const auto at = [&](int i, int j) { return static_cast<std::size_t>(j * n + i); };
+    std::vector<char> inked(static_cast<std::size_t>(n * n)), covered(inked.size(), 0);
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) inked[at(i, j)] = ink.at(kCell * Vec2(i, j) - half_width) > 0.5;
+    std::vector<std::array<int, 2>> disc;
+    for (int y = -reach; y <= reach; ++y)
+        for (int x = -reach; x <= reach; ++x)
+            if (x * x + y * y <= reach * reach) disc.push_back({x, y});
+    for (int j = reach; j + reach < n; ++j)
+        for (int i = reach; i + reach < n; ++i)
+            if (std::ranges::all_of(disc, [&](const auto& d) { return inked[at(i + d[0], j + d[1])]; }))
+                for (const auto& d : disc) covered[at(i + d[0], j + d[1])] = 1;
+    int longest = 0;  // squared, in cells
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            if (!inked[at(i, j)] || covered[at(i, j)]) continue;
+            int nearest = n * n;
+            for (int l = 0; l < n; ++l)
+                for (int k = 0; (l - j) * (l - j) < nearest && k < n; ++k)
+                    if (covered[at(k, l)]) nearest = std::min(nearest, (k - i) * (k - i) + (l - j) * (l - j));
+            longest = std::max(longest, nearest);
+        }
+    return kCell * std::sqrt(longest);
+}
+
+// In a turn that it does not follow the hair of a fan comes over from one broad side to the other. Pressed, its flanks
+// stayed behind: a waist, a knot, and a spike, 5.3 mm long of nine spines and 3.6 mm of five.
+TEST(TurnBack, OfAFanToItsOtherSideLeavesNoSpike) {
+    brush::Preset fan = brush::load_preset("fan-30");
+    fan.spines = 5;
+    fan.segments = 10;
+    TiltedTipLag tilted(fan);
+    HolderOptions options = holder_options(fan);
+    options.tip_lag = tilted.as_held();
+    options.tip_lag_change = [&](double depth, const Vec2& lean, double turn) { return tilted.at(depth, lean, turn); };
+    constexpr double kRadius = 27e-3, kTurn = 4.5, kLands = 0.6;
+    StrokeSamples trace;
+    for (int i = 0; i <= 200; ++i) {
+        const double a = kTurn * i / 200;
+        trace.samples.push_back({.time = kRadius * a / 0.05,
+                                 .position = kRadius * Vec3(std::sin(a), -std::cos(a), 0),
+                                 .pressure = 0.5 * std::min({1.0, a / kLands, (kTurn - a) / kLands}),
+                                 .roll = 0.5 * std::numbers::pi});
+    }
+    // A disc of 4 mm: hairs at its ends stand out by as much as the fan's ends are ragged.
+    const double spike = longest_spike(plane_ink(trace, fan, options, 5e-4, 3e-4), 0.05, 2.1e-3);
+    RecordProperty("spike_mm", std::to_string(spike / kMillimetre));
+    EXPECT_LT(spike, 2.5e-3);
+}
+
+// Samples that are added at a turn had shifted the places of those after it.
+TEST(TurnBack, OnAModelTheHandLeadsTheInkByItsLagOnly) {
+    static WidthTables tables;
+    const Model model = sheet({}, 256);
+    const HolderOptions& options = tables.holder("flat-12");
+    StrokeSamples trace;
+    for (int i = 0; i <= 20; ++i)
+        trace.samples.push_back({.time = 0.05 * i,
+                                 .position = {i <= 10 ? -0.015 + 3e-3 * i : 0.045 - 3e-3 * i, 0, 0},
+                                 .pressure = 0.4,
+                                 .roll = 0.5 * std::numbers::pi});
+    const HandPath path = hand_path(*model.query, trace, options);
+    ASSERT_GT(path.mapped.samples.size(), trace.samples.size() + path.set_down);
+    for (const SurfaceSample& s : path.mapped.samples)
+        EXPECT_LT(glm::length(s.tip_lag), 0.6 * options.tuft_length) << s.time;  // the flat's lag at that depth: 0.48
+}
+
+// A corner of a right angle keeps the hair down and the hand where it was.
+TEST(TurnBack, ACornerIsNone) {
+    static WidthTables tables;
+    const HolderOptions& options = tables.holder("flat-12");
+    StrokeSamples trace;
+    for (int i = 0; i <= 80; ++i)
+        trace.samples.push_back({.time = 0.01 * i,
+                                 .position = {5e-4 * std::min(i, 40), 5e-4 * std::max(0, i - 40), 0},
+                                 .pressure = 0.4,
+                                 .roll = 0.5 * std::numbers::pi});
+    const StrokeSamples led = compensate_tip_lag(add_turn_samples(trace, options), options);
+    EXPECT_GE(led.samples.size(), trace.samples.size());
+    for (const StrokeSample& s : led.samples) EXPECT_EQ(s.pressure, s.time >= 0 ? 0.4 : s.pressure) << s.time;
+}
+
+TEST(TurnBack, IsTheSameForAnySamples) {
+    const ThereAndBack many = there_and_back("flat-12", 0.5 * std::numbers::pi, 0.4, 800, true),
+                       few = there_and_back("flat-12", 0.5 * std::numbers::pi, 0.4, 20, true);
+    // Cells of 0.1 mm; where few samples lie the hand lands 2 mm apart.
+    EXPECT_NEAR(many.across.width(), few.across.width(), 3e-4);
+    EXPECT_NEAR(many.behind, few.behind, 3e-4);
+}
+
+}  // namespace
+}  // namespace tuft::stroke
