@@ -266,5 +266,42 @@ TEST(Sponge, PrintsTheSamePictureAgain) {
     EXPECT_GT(different(first, inked(1, 0.5 * pi)), 0.2);
 }
 
+// A full sponge that is dragged leaves a thin film with the streaks of its pores. As thick as where it is pressed on,
+// it hid them.
+TEST(Sponge, AFullOneThatIsDraggedLeavesStreaks) {
+    const Model model = sheet();
+    Document painting(model);
+    painting.paint(line(kSponge + "*0.4", 2e-3));
+    const ink::Canvas& canvas = painting.layers().canvas();
+    const double film = painting.materials().ink("carbon").film;
+    constexpr double kRow = 6e-5;  // metres, a texel
+    std::vector<double> row(101), weight(101);
+    double landed = 0, landed_area = 0;
+    for (const std::uint32_t slot : canvas.touched_slots()) {
+        const ink::Plane* plane = canvas.plane(slot, 0);
+        for (int t = 0; plane && t < atlas::kTileTexels; ++t) {
+            const Vec3 p(model.texels.position(slot, t));
+            const double area = static_cast<double>(model.texels.tiles[slot].area[t]);
+            // Landed on until the hand is 5 mm on its way, it slides from there to where it is lifted.
+            if (glm::length(Vec2(p) - Vec2(-0.0115, 0)) < 3e-3) landed += area * (*plane)[t], landed_area += area;
+            if (std::abs(p.x - 1e-3) > 2e-3 || std::abs(p.y) > 3e-3) continue;
+            const auto k = static_cast<std::size_t>((p.y + 3e-3) / kRow);
+            row[k] += area * (*plane)[t], weight[k] += area;
+        }
+    }
+    double mean = 0, square = 0, rows = 0;
+    for (std::size_t k = 0; k < row.size(); ++k)
+        if (weight[k] > 0) mean += row[k] / weight[k], square += std::pow(row[k] / weight[k], 2), ++rows;
+    mean /= rows;
+    const double contrast = std::sqrt(std::max(0.0, square / rows - mean * mean)) / mean;
+    RecordProperty("film", std::to_string(mean / film));
+    RecordProperty("contrast", std::to_string(contrast));
+    EXPECT_LT(mean, 0.7 * film);
+    EXPECT_GT(mean, 0.05 * film);
+    EXPECT_LT(mean, 0.5 * landed / landed_area) << "less than where it was pressed on";
+    // 12 mm of skin with 45 % of its area in ridges of 0.1 mm: their share of a row is 45 % by about a tenth of it.
+    EXPECT_GT(contrast, 0.08);
+}
+
 }  // namespace
 }  // namespace tuft::stroke

@@ -17,6 +17,7 @@ struct Stamp {
     footprint::Motion motion;  ///< since the stamp before, in the footprint's frame
     ink::DepositParams ink;
     double ds = 0;          ///< metres of travel that it stands for
+    double slides = 0;      ///< part of the hand's way on which foam slides along, 0–1
     double erases = 0;      ///< strength of an eraser, which removes ink; 0: no eraser
     bool leapt = false;     ///< hair leapt since the stamp before; if wet, all that it passed over is in the footprint
     bool by_hair = false;   ///< made of single hairs: the substrate's grain shows where ink does not fill it

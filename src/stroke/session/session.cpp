@@ -18,6 +18,7 @@ constexpr double kPrintTravel = 1e-4;  // metres that dry hair slides after it c
 // Of the ink that a face of foam gives where it is pressed on, what it gives where it slides by as far: its ridges ride
 // on a thin film, and its pores wipe behind them.
 constexpr double kSlidingFoam = 0.005;
+constexpr double kSlidesOn = 0.5;  // part of the way on which a face slides, from which on nothing is pressed out
 
 // Metres: furrows and edges of paste are rounded over more than a tenth of a millimetre.
 constexpr double kPasteSpacing = 1e-4, kPasteCell = 4e-5;
@@ -205,6 +206,7 @@ void StrokeSession::set_motion(Stamp& stamp, const ContactMotion& moved, double 
     stamp.ds = prints ? path_.spacing : (1 - static_cast<double>(stamp.separation)) * path_.spacing;
     if (brush::is_foam(preset)) {
         const double slides = std::min(stamp.ds, glm::length(moved.hair));
+        stamp.slides = stamp.ds > 0 ? slides / stamp.ds : 0;
         stamp.ds += (kSlidingFoam - 1) * slides;
     }
     // An edge that slips away under a press draws by its own path, which is longer than the hand's.
@@ -234,10 +236,11 @@ ink::DepositParams StrokeSession::deposit_from(const ink::Reservoir& tuft, const
 
 void StrokeSession::set_ink(Stamp& stamp, double area) const {
     stamp.ink = deposit_from(tuft_.brush.reservoir, stamp, area);
-    // What a pressed sponge does not hold comes out with its film.
+    // What a pressed sponge does not hold comes out with its film, unless it slides on.
     if (brush::is_foam(tuft_.preset()) && area > 0)
         stamp.ink.target +=
-            static_cast<float>(std::max(0.0, ink::excess(tuft_.brush.reservoir) - deposit_->pending()) / area);
+            static_cast<float>(std::max(0.0, 1 - stamp.slides / kSlidesOn) *
+                               std::max(0.0, ink::excess(tuft_.brush.reservoir) - deposit_->pending()) / area);
     // Ink stands in the grain, where hair that lies apart does not keep to its hills.
     if (hair_.options().tones)
         stamp.grain_share =
