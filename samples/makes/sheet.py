@@ -3,7 +3,8 @@
 
 usage: sheet.py BRUSH LENGTH_MM WIDTH_MM BROAD FOLDER
 
-LENGTH_MM: of the hair. WIDTH_MM: of the mark. BROAD: 1 for a ferrule with a broad side, else 0.
+LENGTH_MM: of the hair. WIDTH_MM: of the mark. BROAD: 1 for a ferrule with a broad side, 2 for a blade, which is
+led along it, else 0.
 """
 
 import math
@@ -27,7 +28,7 @@ def wave(x0, x1, y, height, broad, roll_of=None, press=0.5):
         f = i / n
         p = press * min(1, f / 0.12, (1 - f) / 0.12)
         slope = -height * 2 * math.pi / (x1 - x0) * math.cos(2 * math.pi * f)
-        roll = roll_of(math.atan2(slope, 1)) if roll_of else 90.0 * broad
+        roll = roll_of(math.atan2(slope, 1)) if roll_of else 90.0 * (broad == 1)
         keys.append((x0 + f * (x1 - x0), y - height * math.sin(2 * math.pi * f), p, roll))
     return keys
 
@@ -37,7 +38,8 @@ def strokes(cell, length, broad):
 
     A round tuft is pressed down over a quarter of its hair: that much of it comes to trail, and a hand that presses
     sooner pushes it against its point, which draws a head wider than the stroke and a neck behind it."""
-    across = 90.0 if broad else 0.0  # the broad side across a stroke to the right
+    across = 90.0 if broad == 1 else 0.0  # the broad side across a stroke to the right; a blade along it
+    other = 90.0 if broad == 2 else 0.0
     speed = 0.8 * cell
     out = []
 
@@ -55,22 +57,22 @@ def strokes(cell, length, broad):
     out.append(Stroke("straight").go(line(x - half, y - 0.2 * cell, x + half, y - 0.2 * cell, across, land=land), speed))
     out.append(Stroke("straight, diagonal").go(line(x - half, y + 0.35 * cell, x + half, y + 0.05 * cell, across, land=land), speed))
     x, y = centre(2, 0)
-    out.append(Stroke("edge, to the right").go(line(x - half, y - 0.25 * cell, x + half, y - 0.25 * cell, 0, 0.35, land), speed))
+    out.append(Stroke("edge, to the right").go(line(x - half, y - 0.25 * cell, x + half, y - 0.25 * cell, other, 0.35, land), speed))
     out.append(Stroke("edge, down").go(line(x - 0.15 * cell, y - 0.12 * cell, x - 0.15 * cell, y + half, across, 0.35, land), speed))
-    out.append(Stroke("broad, down").go(line(x + 0.2 * cell, y - 0.12 * cell, x + 0.2 * cell, y + half, 0, 0.5, land), speed))
+    out.append(Stroke("broad, down").go(line(x + 0.2 * cell, y - 0.12 * cell, x + 0.2 * cell, y + half, across - 90 * (broad > 0), 0.5, land), speed))
     x, y = centre(3, 0)
     turn = [(x + 0.27 * cell * math.sin(t), y - 0.27 * cell * math.cos(t), 0.5 * min(1, t / 0.6, (4.5 - t) / 0.6), across)
             for t in [4.5 * i / 60 for i in range(61)]]
     out.append(Stroke("turn").go(turn, 0.6 * speed))
     x, y = centre(0, 1)
-    follow = (lambda w: 90 - math.degrees(w)) if broad else None
+    follow = (lambda w: across - math.degrees(w)) if broad else None
     out.append(Stroke("S").go(wave(x - half, x + half, y - 0.2 * cell, 0.13 * cell, broad), speed))
     out.append(Stroke("S, following").go(wave(x - half, x + half, y + 0.22 * cell, 0.13 * cell, broad, follow), speed))
     x, y = centre(1, 1)
     press = [(x - half + 2 * half * f, y - 0.22 * cell, 0.02 + 0.88 * math.sin(2 * math.pi * f) ** 2 if 0.02 < f < 0.98 else 0,
               across) for f in [i / 60 for i in range(61)]]
     out.append(Stroke("press and lift").go(press, speed))
-    press = [(px, py + 0.47 * cell, p, 0) for px, py, p, _ in press]
+    press = [(px, py + 0.47 * cell, p, other) for px, py, p, _ in press]
     out.append(Stroke("press and lift, edge" if broad else "press and lift again").go(press, speed))
     x, y = centre(2, 1)
     for i, amount in enumerate((0.6, 0.75, 0.88)):
@@ -81,6 +83,10 @@ def strokes(cell, length, broad):
     out.append(Stroke("reversed").go([(x - half, y + 0.2 * cell, 0, across), (x - 0.8 * half, y + 0.2 * cell, 0.4, across),
                                       (x + half, y + 0.2 * cell, 0.4, across), (x - 0.3 * half, y + 0.25 * cell, 0.4, across),
                                       (x - half, y + 0.25 * cell, 0, across)], speed))
+    if broad == 2:  # a stripe is drawn by the point of a blade
+        for stroke in out:
+            for point in stroke.points:
+                point[2] *= 0.35
     return out
 
 

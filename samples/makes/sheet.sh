@@ -19,7 +19,7 @@ paint() {
   wide=$(value "$file" width_mm)
   case $name in fan-*) wide=${name#fan-} ;; esac
   width=$(awk -v w="$wide" -v r="$radius" 'BEGIN { print (w > 2 * r ? w : 2 * r) }')
-  python3 samples/makes/sheet.py "$name" "$length" "$width" "$(awk -v w="$wide" 'BEGIN { print (w > 0) }')" "$out"
+  python3 samples/makes/sheet.py "$name" "$length" "$width" "$(awk -v w="$wide" -v s="$(value "$file" slant_mm)" 'BEGIN { print (w > 0) + (s > 0) }')" "$out"
   "$tuft" paint "$out/$name.obj" --unit mm --up z --keep-uv --strokes "$out/$name.inkml" --atlas-size "$side" --quiet \
     --project "$out/$name.tuft"
   rm -f "$out/$name"-*.png
