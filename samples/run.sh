@@ -83,10 +83,10 @@ say "sheets of film: a water-slide decal for the plate, a wrap for the car's pin
 "$tuft" decals "$out/car.tuft" -o "$out/pinstripe-wrap.pdf" --max-strain 15% --bleed 8mm --page roll --guide "$out/pinstripe-guide"
 "$tuft" decals "$out/plum.tuft" -o "$out/plum-plates.pdf" --plates
 if command -v pdftoppm >/dev/null; then  # of poppler-utils
-  pdftoppm -r 68.4 -singlefile -png "$out/plate-decal.pdf" "$out/plate-decal"
+  pdftoppm -r 58 -singlefile -png "$out/plate-decal.pdf" "$out/plate-decal"
   pdftoppm -r 82.2 -singlefile -png "$out/plum-plates.pdf" "$out/plum-plates"
-  oiiotool "$out/plum-plates.png" --cut 680x700+0+262 "$out/plate-decal.png" --cut 800x700+0+431 --create 1480x700 3 \
-    --paste +0+0 --paste +800+0 -d uint8 -o "$out/decals.png"
+  oiiotool "$out/plum-plates.png" --cut 680x700+0+262 "$out/plate-decal.png" --cut 678x700+0+260 --create 1358x700 3 \
+    --paste +0+0 --paste +678+0 -d uint8 -o "$out/decals.png"
 fi
 
 # By brushes of trades: petals of two inks, bamboo by a flat, blue-and-white, a sword's pinstripe.
