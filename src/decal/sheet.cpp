@@ -267,7 +267,8 @@ struct Layout {
     bool fits = true;
 
     bool takes_hardly_more_than(const Layout& other) const {
-        return fits && other.fits && pages <= other.pages && (pages < other.pages || used <= kHardlyMore * other.used);
+        if (!fits || !other.fits) return fits;
+        return pages < other.pages || (pages == other.pages && used <= kHardlyMore * other.used);
     }
 };
 

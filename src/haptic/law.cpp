@@ -280,7 +280,7 @@ Vec3 turn_between(const Quat& before, const Quat& now) {
 void restart_law(LawState& state, const Vec3& arm, const Quat& rotation) {
     state = {};
     state.started = true;
-    state.arm.measured = state.arm.position = state.root.position = state.tank.played = arm;
+    state.arm.measured = state.arm.position = state.root.position = state.fade.root = state.tank.played = arm;
     state.arm.rotation = rotation;
     state.tank.energy = kTankKeeps;
 }

@@ -291,7 +291,7 @@ TEST(HairMacro, RigidHairKeepsItsShapeAndElasticHairDoesNot) {
     LeaningMacro m;
     collide(m.macro, m.row, m.law, {.pose = m.pose, .planes = {&m.plane, 1}});
     const Pose lifted{m.pose.position + Vec3{0, 0, 0.05}, m.pose.rotation};
-    carry(m.macro, m.pose, lifted);
+    move_rigidly(m.macro, m.pose, lifted);
     for (const double stress : {0.1, 3.0}) {
         HairMacro macro = m.macro;
         macro.stress = stress;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -99,6 +100,21 @@ TEST(Decimate, ThinClosedPartsStay) {
             EXPECT_LT(copy.n_polygons(), how.n_triangles > 0 ? how.n_triangles + 1 : 700);
         }
     }
+}
+
+// Each part that would go is reduced by itself: in the time of its own vertices, or 4,000 of them would take minutes.
+TEST(Decimate, ThousandsOfThinPartsStay) {
+    PolygonSoup soup = make_torus(60, 30);
+    for (int i = 0; i < 4000; ++i) {
+        const auto n = static_cast<std::uint32_t>(soup.points.size());
+        const double x = 100 + 3 * (i % 64), y = 3.0 * (i / 64);
+        for (const Vec2& p : {Vec2(0, 0), Vec2(2, 0), Vec2(2, 2), Vec2(0, 2)})
+            soup.points.emplace_back(x + p.x, y + p.y, 0);
+        for (const auto& [a, b, c] : {std::array{0u, 2u, 1u}, {0u, 3u, 2u}, {0u, 1u, 3u}, {1u, 2u, 3u}})
+            add_polygon(soup, {n + a, n + b, n + c});
+    }
+    const PolygonSoup copy = decimate(build_surface(soup, kMetres).mesh, {.error = 0.5});
+    EXPECT_GE(copy.n_polygons(), 4 * 4000u);
 }
 
 TEST(Decimate, SameMeshSameBitsAndNoLimitIsRefused) {

@@ -125,6 +125,49 @@ TEST(Programs, WhereTheHandRestsTheToolWaits) {
     for (const double feed : waits(gcode_text(p), " F" + kNumber)) EXPECT_GT(feed, 0);
 }
 
+/// A hand that creeps by `length` each `time`, 300 times.
+MotionProgram creeping(double length, double time) {
+    MotionProgram p = program(0);
+    std::vector<motion::Waypoint>& points = p.trajectory.moves[1].points;
+    for (int i = 0; i < 300; ++i) {
+        motion::Waypoint next = points.back();
+        next.pose.position.x += length;
+        next.pose.time += time;
+        points.push_back(next);
+    }
+    return p;
+}
+
+/// Seconds that a program of moves and waits takes: `way` has x, y, z and what the speed is in metres per second.
+double duration(const std::string& text, const std::string& way, double speed, const std::string& wait, double metres) {
+    double seconds = 0;
+    Vec3 at{0.01, 0.02, 0.06};
+    for (const std::vector<double>& m : numbers_in(text, std::regex(way))) {
+        const Vec3 to = metres * Vec3(m[0], m[1], m[2]);
+        seconds += glm::distance(to, at) / (speed * m[3]);
+        at = to;
+    }
+    for (const std::vector<double>& w : numbers_in(text, std::regex(wait))) seconds += w[0];
+    return seconds;
+}
+
+// Steps shorter than the digits of a program are waited, and then made at the speed of their printed length.
+TEST(Programs, ASlowCreepTakesItsTime) {
+    const std::string place = "G1 X" + kNumber + " Y" + kNumber + " Z" + kNumber + " F" + kNumber;
+    const auto gcode = [&](const MotionProgram& p) {
+        return duration(gcode_text(p), place, 1e-3 / 60, "G4 P" + kNumber, 1e-3);
+    };
+    EXPECT_NEAR(gcode(creeping(6e-8, 0.01)), 0.7 + 3, 0.002);  // feeds have six digits behind the point
+    EXPECT_NEAR(gcode(creeping(2e-10, 0.01)), 0.7 + 3, 0.002) << "one step crosses the edge of a digit";
+    const MotionProgram p = creeping(4e-7, 0.004);
+    const std::string text = urscript_text(p);
+    const double made = duration(
+        text, "movep\\(p\\[" + kNumber + ", " + kNumber + ", " + kNumber + ", [^\\]]*\\], a=[^,]*, v=" + kNumber, 1,
+        "(?:sleep\\(|t=)" + kNumber, 1);
+    // The first `movep` begins where the approach, which has a time of its own, has ended.
+    EXPECT_NEAR(made - 0.04 / 0.05, 0.7 + 1.2, 0.02);
+}
+
 // The path of a holder that turns in its place has no length: in KRL its turn has a speed.
 TEST(Programs, KrlTurnsInItsPlaceInItsTime) {
     MotionProgram p = program(0);
@@ -135,6 +178,9 @@ TEST(Programs, KrlTurnsInItsPlaceInItsTime) {
     ASSERT_EQ(speeds.size(), 2u);
     EXPECT_NEAR(speeds[0][0], p.limits.turn * 180 / kPi, 1e-4);
     EXPECT_NEAR(speeds[1][0], 0.25 * 180 / kPi, 1e-4);
+    // A turn whose speed would be printed as 0.
+    p.trajectory.moves[1].points[2].pose.rotation = glm::angleAxis(2e-6, Vec3(0, 0, 1));
+    EXPECT_EQ(numbers_in(krl_text(p), std::regex("VEL.ORI1 = " + kNumber)).size(), 1u);
 }
 
 // KUKA's controllers want the file's name; no language takes its own words as names, nor `main` beside RAPID's `main`.

@@ -510,6 +510,10 @@ TEST(FollowNames, OfPagesThatBecameOneAreItsPart) {
     // Two objects of one name today: which of them the page went to is not known.
     const mesh::TriangleMesh two = file_of({{"Hood", "decorated"}, {"Tyre", "Rubber"}, {"Hood", "decorated"}});
     EXPECT_EQ(follow(former, two, {"Hood 2"}).former[1], "Tyre");
+    // Two objects of one name before: nor is it known whose page is left.
+    const mesh::TriangleMesh both =
+        file_of({{"Hood", "decorated.1001"}, {"Hood", "decorated.1001"}, {"Tyre", "Rubber"}});
+    EXPECT_NE(follow(both, revised, {"Hood 2"}).mask, (Names{"Hood"}));
 }
 
 // A project of a time when the material of one node named its part.

@@ -19,6 +19,7 @@ constexpr double kMm = 1000;
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kUpright = 3 / kDegrees;  // lean of a holder that a plotter can be taken for
 constexpr double kLeastSpeed = 1e-4;       // m/s; a slower hand waits at the end of its way
+constexpr double kLeastTurn = 1e-3;        // rad, of one whose printed speed is right to 1 %
 
 /// A straight way to a place: metres, radians, seconds.
 struct Step {
@@ -26,6 +27,24 @@ struct Step {
     double length = 0, turn = 0, time = 0;
 
     double speed() const { return time > 0 ? length / time : 0; }
+};
+
+/// Lengths between places as they are printed: what is lost or gained by rounding one step is made up in the next.
+class PrintedWay {
+  public:
+    explicit PrintedWay(double digit) : digit_(digit) {}
+
+    void start(const Vec3& at) { at_ = glm::round(at / digit_); }
+    /// Metres per second from the place before.
+    double speed_to(const Step& step) {
+        const Vec3 from = at_;
+        start(step.tcp.position);
+        return step.time > 0 ? digit_ * glm::length(at_ - from) / step.time : 0;
+    }
+
+  private:
+    double digit_;  // metres
+    Vec3 at_{0};
 };
 
 template <class Visit>
@@ -98,19 +117,23 @@ MotionFrame tcp_of(const brush::Pose& pose, const MotionFrame& base) {
 std::string urscript_text(const MotionProgram& program) {
     std::string text = fmt::format("def {}():\n  set_tcp({})\n", program.title, ur_pose(program.tool));
     std::string at;
+    PrintedWay way(1e-6);
     for (const Move& move : program.trajectory.moves) {
         text += "  # " + comment_of(program, move) + "\n";
-        if (at.empty()) text += fmt::format("  movej({}, a=0.5, v=0.3)\n", at = ur_pose(start_of(program)));
+        if (at.empty()) {
+            text += fmt::format("  movej({}, a=0.5, v=0.3)\n", at = ur_pose(start_of(program)));
+            way.start(start_of(program).position);
+        }
         for_steps(move, program.base, [&](const Step& step) {
             const std::string to = ur_pose(step.tcp);
+            const double speed = way.speed_to(step);
             if (to == at)
                 text += fmt::format("  sleep({:.6f})\n", step.time);
-            else if (move.kind == MoveKind::stroke && step.speed() >= kLeastSpeed)
-                text += fmt::format("  movep({}, a={:.4f}, v={:.6f}, r=0)\n", to, program.limits.acceleration,
-                                    step.speed());
+            else if (move.kind == MoveKind::stroke && speed >= kLeastSpeed)
+                text += fmt::format("  movep({}, a={:.4f}, v={:.6f}, r=0)\n", to, program.limits.acceleration, speed);
             else
                 text += fmt::format("  movel({}, a={:.4f}, v={:.6f}, t={:.6f}, r=0)\n", to, program.limits.acceleration,
-                                    std::max(step.speed(), kLeastSpeed), step.time);
+                                    std::max(speed, kLeastSpeed), step.time);
             at = to;
         });
     }
@@ -166,7 +189,7 @@ std::string krl_text(const MotionProgram& program) {
             at = to;
             // A holder that turns in its place has no speed of the path: that of its turn keeps the time.
             const double spare = step.time - step.length / kLeastSpeed;
-            const bool in_place = spare > 0 && step.turn > 1e-6;
+            const bool in_place = spare > 0 && step.turn > kLeastTurn && step.turn > kLeastTurn * step.time;
             const std::string turn = in_place ? turning(step.turn / step.time) : fastest;
             if (turn != turns) text += turns = turn;
             text += fmt::format("  $VEL.CP = {:.6f}\n  LIN {} C_DIS\n", std::max(step.speed(), kLeastSpeed), to);
@@ -182,6 +205,7 @@ std::string gcode_text(const MotionProgram& program) {
         return fmt::format("X{:.4f} Y{:.4f} Z{:.4f}", kMm * f.position.x, kMm * f.position.y, kMm * f.position.z);
     };
     std::string at;
+    PrintedWay way(1e-7);
     for (const Move& move : program.trajectory.moves) {
         text += "(" + comment_of(program, move) + ")\n";
         double lean = 0;
@@ -191,13 +215,17 @@ std::string gcode_text(const MotionProgram& program) {
             throw Error(
                 Message("stroke {}: its holder leans by {} degrees, but G-code holds it upright; write another form",
                         move.stroke + 1, std::lround(kDegrees * lean)));
-        if (at.empty()) text += "G0 " + (at = place(start_of(program))) + "\n";
+        if (at.empty()) {
+            text += "G0 " + (at = place(start_of(program))) + "\n";
+            way.start(start_of(program).position);
+        }
         for_steps(move, program.base, [&](const Step& step) {
             const std::string to = place(step.tcp);
+            const double speed = way.speed_to(step);
             if (to == at)
                 text += fmt::format("G4 P{:.4f}\n", step.time);
             else  // a controller refuses a feed of 0
-                text += fmt::format("G1 {} F{:.6f}\n", to, std::max(60 * kMm * step.speed(), 1e-6));
+                text += fmt::format("G1 {} F{:.6f}\n", to, std::max(60 * kMm * speed, 1e-6));
             at = to;
         });
     }

@@ -135,11 +135,24 @@ class Simplifier {
     /// `error` metres.
     std::vector<std::uint32_t> operator()(const std::vector<std::uint32_t>& corners, std::size_t n_triangles,
                                           double error) const {
-        const float scale = meshopt_simplifyScale(&positions_[0].x, positions_.size(), sizeof(Vec3f));
-        const float most = error > 0 ? static_cast<float>(error) / scale : FLT_MAX;
-        std::vector<std::uint32_t> left(corners.size());
-        left.resize(meshopt_simplify(left.data(), corners.data(), corners.size(), &positions_[0].x, positions_.size(),
-                                     sizeof(Vec3f), 3 * std::min(n_triangles, corners.size() / 3), most, 0, nullptr));
+        std::vector<std::uint32_t> left = collapse(corners, positions_, n_triangles, error);
+        drop_fins(wedges_, left);
+        return left;
+    }
+
+    /// The same of a small part, in the time of its own vertices: the library looks at all that it is given.
+    std::vector<std::uint32_t> of_part(const std::vector<std::uint32_t>& corners, std::size_t n_triangles,
+                                       double error) const {
+        std::vector<std::uint32_t> used = corners;
+        std::sort(used.begin(), used.end());
+        used.erase(std::unique(used.begin(), used.end()), used.end());
+        std::vector<Vec3f> positions;
+        for (const std::uint32_t wedge : used) positions.push_back(positions_[wedge]);
+        std::vector<std::uint32_t> own;
+        for (const std::uint32_t wedge : corners)
+            own.push_back(static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), wedge) - used.begin()));
+        std::vector<std::uint32_t> left = collapse(own, positions, n_triangles, error);
+        for (std::uint32_t& corner : left) corner = used[corner];
         drop_fins(wedges_, left);
         return left;
     }
@@ -151,6 +164,17 @@ class Simplifier {
     }
 
   private:
+    static std::vector<std::uint32_t> collapse(const std::vector<std::uint32_t>& corners,
+                                               const std::vector<Vec3f>& positions, std::size_t n_triangles,
+                                               double error) {
+        const float scale = meshopt_simplifyScale(&positions[0].x, positions.size(), sizeof(Vec3f));
+        const float most = error > 0 ? static_cast<float>(error) / scale : FLT_MAX;
+        std::vector<std::uint32_t> left(corners.size());
+        left.resize(meshopt_simplify(left.data(), corners.data(), corners.size(), &positions[0].x, positions.size(),
+                                     sizeof(Vec3f), 3 * std::min(n_triangles, corners.size() / 3), most, 0, nullptr));
+        return left;
+    }
+
     const Wedges& wedges_;
     std::vector<Vec3f> positions_;  // of wedges
 };
@@ -175,7 +199,7 @@ std::vector<std::vector<std::uint32_t>> lost_parts(const TriangleMesh& mesh, con
         if (size <= 2 * least) continue;
         double error = least > 0 ? 0.25 * least : kOfSize * size;
         std::vector<std::uint32_t> own;
-        for (int i = 0; i < kTries && own.empty(); ++i, error *= 0.25) own = simplify(corners, 1, error);
+        for (int i = 0; i < kTries && own.empty(); ++i, error *= 0.25) own = simplify.of_part(corners, 1, error);
         parts.emplace_back(size, own.empty() ? std::move(corners) : std::move(own));
     }
     std::stable_sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.first > b.first; });

@@ -138,9 +138,14 @@ class PartMatch {
         for (const GroupPart& part : is_)
             if (part.material == decorated || part.material.starts_with(decorated + "."))
                 now[{part.object, is_glass(part.material)}].insert(part.group);
+        // Two former objects of one name: which of them is left nobody can tell.
+        std::map<std::pair<std::string, std::string>, std::set<std::uint32_t>> before;  // by object and material
+        for (const GroupPart& part : was_) before[{part.object, part.material}].insert(part.group);
         for (std::size_t i = 0; i < was_.size(); ++i) {
-            if (!found_[i].empty() || was_[i].object.empty() || mesh::decorated_page(was_[i].material) == 0) continue;
-            const auto at = now.find({was_[i].object, is_glass(was_[i].material)});
+            const GroupPart& part = was_[i];
+            if (!found_[i].empty() || part.object.empty() || mesh::decorated_page(part.material) == 0) continue;
+            if (before.at({part.object, part.material}).size() > 1) continue;
+            const auto at = now.find({part.object, is_glass(part.material)});
             if (at != now.end() && at->second.size() == 1) found_[i] = {*at->second.begin()};
         }
         take();

@@ -93,8 +93,8 @@ struct TextHand {
 };
 
 /// Appends the strokes of a text in lines or columns, as flat entries without a placement, in one group with id 1.
-/// Frame: metres, y down. Throws `Error` as `Writer::write`, `Cancelled` where `progress` returns false. Cost: about 0.2 s for each stroke that is
-/// not in the cache.
+/// Frame: metres, y down. Throws `Error` as `Writer::write`, `Cancelled` where `progress` returns false. Cost: about
+/// 0.2 s for each stroke that is not in the cache.
 void append_lines(std::vector<stroke::JournalEntry>& entries, const Text& text, const TextHand& hand,
                   const ProgressFn& progress);
 
