@@ -183,7 +183,7 @@ void sew(double diagonal, Product& product) {
     sewing.Perform();
     for (const TopoDS_Shape& face : faces) {
         if (!sewing.IsModified(face)) continue;
-        const TopoDS_Shape became = sewing.Modified(face);
+        const TopoDS_Shape& became = sewing.Modified(face);
         hand_on(face, became, product.styles);
         hand_on(face, became, product.names);
         hand_on(face, became, product.sheets);
