@@ -12,7 +12,7 @@
 #include "core/system/interrupt.h"
 #include "core/system/parallel.h"
 #include "stroke/drawing/plane_ink.h"
-#include "stroke/gesture/roll.h"
+#include "stroke/gesture/mix_samples.h"
 #include "stroke/gesture/tractrix.h"
 
 namespace tuft::stroke {
@@ -64,16 +64,7 @@ std::vector<StrokeSample> evenly(const std::vector<StrokeSample>& s, double apar
     for (std::size_t i = 1; i < s.size(); ++i) {
         const double length = glm::distance(s[i].position, s[i - 1].position);
         const auto n = static_cast<int>(std::clamp(std::round(length / apart), 1.0, 1e4));
-        for (int k = 1; k <= n; ++k) {
-            const double f = static_cast<double>(k) / n;
-            StrokeSample next = s[i];
-            next.position = glm::mix(s[i - 1].position, s[i].position, f);
-            next.time = std::lerp(s[i - 1].time, s[i].time, f);
-            next.pressure = std::lerp(s[i - 1].pressure, s[i].pressure, f);
-            next.tilt = glm::mix(s[i - 1].tilt, s[i].tilt, f);
-            next.roll = mix_roll(s[i - 1].roll, s[i].roll, f);
-            out.push_back(next);
-        }
+        for (int k = 1; k <= n; ++k) out.push_back(mix_samples(s[i - 1], s[i], static_cast<double>(k) / n));
     }
     return out;
 }

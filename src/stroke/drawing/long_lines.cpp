@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "stroke/gesture/roll.h"
+#include "stroke/gesture/mix_samples.h"
 #include "stroke/gesture/tractrix.h"
 
 namespace tuft::stroke {
@@ -15,16 +15,6 @@ constexpr double kLeastPressure = 0.3;  // least pressure of a brush that is tak
 constexpr double kTipSupply = 30;       // seconds, of a brush that is taken larger
 constexpr double kCutSlack = 0.1;       // of a piece, to both sides, within which a cut is looked for
 constexpr double kShortestPiece = 4;    // overlaps
-
-StrokeSample mix(const StrokeSample& a, const StrokeSample& b, double part) {
-    StrokeSample out = b;
-    out.position = glm::mix(a.position, b.position, part);
-    out.time = std::lerp(a.time, b.time, part);
-    out.pressure = std::lerp(a.pressure, b.pressure, part);
-    out.tilt = glm::mix(a.tilt, b.tilt, part);
-    out.roll = mix_roll(a.roll, b.roll, part);
-    return out;
-}
 
 /// A line as a function of the metres along it; of a closed one, round and round.
 class Path {
@@ -82,9 +72,9 @@ class Path {
             s.time += later;
             if (out.empty() || out.back().position != s.position) out.push_back(s);
         };
-        put(mix(samples_[first - 1], samples_[first], within(first, from)));
+        put(mix_samples(samples_[first - 1], samples_[first], within(first, from)));
         for (std::size_t i = first; i < last; ++i) put(samples_[i]);
-        put(mix(samples_[last - 1], samples_[last], within(last, to)));
+        put(mix_samples(samples_[last - 1], samples_[last], within(last, to)));
     }
 
     std::span<const StrokeSample> samples_;

@@ -9,6 +9,7 @@
 #include "core/ease.h"
 #include "core/system/build_facts.h"
 #include "core/system/parallel.h"
+#include "stroke/gesture/mix_samples.h"
 #include "stroke/gesture/roll.h"
 #include "stroke/gesture/tractrix.h"
 #include "stroke/placement/tip_lag_code.h"
@@ -364,16 +365,6 @@ constexpr double kLifted = 0.4;      // of the string's length: at a turn back t
 constexpr double kLeansOver = 0.9;   // of it: the hand begins to lean over to the other side
 constexpr double kTurnsOnly = 0.6, kTurnsBack = 0.3;  // of it: least length in a turn that lifts no hair, and all of it
 
-StrokeSample between(const StrokeSample& a, const StrokeSample& b, double f) {
-    StrokeSample s = a;
-    s.time = std::lerp(a.time, b.time, f);
-    s.position = glm::mix(a.position, b.position, f);
-    s.pressure = std::lerp(a.pressure, b.pressure, f);
-    s.tilt = glm::mix(a.tilt, b.tilt, f);
-    s.roll = mix_roll(a.roll, b.roll, f);
-    return s;
-}
-
 /// Whether the hand lifts a brush where it turns back and sets it down to the other side: a wide ferrule. Hair that is
 /// pushed before the hand lies on ahead of it for centimetres, then falls along its row. The ink of that place is
 /// there.
@@ -503,7 +494,7 @@ StrokeSamples add_turn_samples(const StrokeSamples& trace, const HolderOptions& 
         const int n = slack ? static_cast<int>(std::ceil(kCutsOfString * std::min(gone / string, 2.0))) : 0;
         const StrokeSample from = out.samples.empty() ? s : out.samples.back();
         for (int i = 1; i <= n && i * string < kCutsOfString * gone; ++i)
-            out.samples.push_back(between(from, s, i * string / (kCutsOfString * gone)));
+            out.samples.push_back(mix_samples(from, s, i * string / (kCutsOfString * gone)));
         dragged = drag_string(dragged, before, p, string);
         before = p;
         out.samples.push_back(s);
