@@ -77,6 +77,30 @@ TEST(TurnBack, OfAWideBrushStaysOnItsStroke) {
     }
 }
 
+// Hair that was lifted left the end of a line with width, which its stencil cuts, ragged.
+TEST(TurnBack, AlongAStencilTheHandKeepsItsPressure) {
+    static WidthTables tables;
+    for (const char* brush : {"flat-12", "fan-30"}) {
+        const HolderOptions holder = tables.holder(brush);
+        StrokeSamples trace;
+        for (int i = 0; i <= 160; ++i)
+            trace.samples.push_back({.time = 0.0125 * i,
+                                     .position = {5e-4 * std::min(i, 160 - i), 0, 0},
+                                     .pressure = 0.4 * std::min({1.0, i / 12.0, (160 - i) / 12.0}),
+                                     .roll = 0.5 * std::numbers::pi});
+        const auto least = [&](const StrokeSamples& path) {  // about the turn
+            const StrokeSamples led = compensate_tip_lag(lean_holder(add_turn_samples(path, holder), holder), holder);
+            double pressure = 1;
+            for (const StrokeSample& s : led.samples)
+                if (std::abs(s.time - 1) < 0.4) pressure = std::min(pressure, s.pressure);
+            return pressure;
+        };
+        EXPECT_LT(least(trace), 0.1) << brush;
+        trace.stencil = {{{-0.01, 0.005}, {0.05, 0.005}}};
+        EXPECT_EQ(least(trace), 0.4) << brush;
+    }
+}
+
 /// How far ink lies from all discs of `radius` within the ink, at most, metres: the longest spike or thread beside a
 /// stroke.
 double longest_spike(const PlaneInk& ink, double half_width, double radius) {

@@ -367,9 +367,9 @@ constexpr double kTurnsOnly = 0.6, kTurnsBack = 0.3;  // of it: least length in 
 
 /// Whether the hand lifts a brush where it turns back and sets it down to the other side: a wide ferrule. Hair that is
 /// pushed before the hand lies on ahead of it for centimetres, then falls along its row. The ink of that place is
-/// there.
-bool is_lifted_at_turns(const HolderOptions& options) {
-    return options.across || options.turned || options.blade_landing > 0;
+/// there. Along a stencil hair is pushed onto it, so that the ink reaches its edge.
+bool is_lifted_at_turns(const StrokeSamples& trace, const HolderOptions& options) {
+    return trace.stencil.empty() && (options.across || options.turned || options.blade_landing > 0);
 }
 
 constexpr double kOtherSide = 0.5;  // sine of the path's turn to the broad side from which on hair lies on that side
@@ -394,8 +394,8 @@ struct Turning {
 
 /// Turning at each sample. A path that turns by up to 106° keeps the hair down, one that turns by 145° or more lifts
 /// it: the string becomes as short as the cosine of half the turn. `ahead`: direction in which the trace sets out.
-std::vector<Turning> turnings_of(std::span<const StrokeSample> samples, const HolderOptions& options,
-                                 const Vec2& ahead) {
+std::vector<Turning> turnings_of(const StrokeSamples& trace, const HolderOptions& options, const Vec2& ahead) {
+    const std::span<const StrokeSample> samples = trace.samples;
     std::vector<Turning> out;
     const double string = options.tip_lag_turn;
     Vec2 before(samples.front().position), dragged = before - string * ahead;
@@ -405,7 +405,7 @@ std::vector<Turning> turnings_of(std::span<const StrokeSample> samples, const Ho
         before = p;
         out.push_back({.towards = (p - dragged) / string});
     }
-    if (options.tip_lag.empty() || !is_lifted_at_turns(options) || is_dot(samples, options)) return out;
+    if (options.tip_lag.empty() || !is_lifted_at_turns(trace, options) || is_dot(samples, options)) return out;
     for (std::size_t i = 0; i < out.size(); ++i) {
         double least = 1;
         std::size_t end = i;
@@ -419,7 +419,7 @@ std::vector<Turning> turnings_of(std::span<const StrokeSample> samples, const Ho
 
 /// Lifts hair that bends across its broad side only where it comes over from one side to the other, in a turn of the
 /// path, until it just touches: pressed, its flanks stay on the old side while its middle goes on. `ahead`: as in
-/// `cut_turns`.
+/// `turnings_of`.
 void lift_to_other_side(StrokeSamples& trace, const HolderOptions& options, const Vec2& ahead) {
     const std::vector<double> along = travelled<StrokeSample>(trace.samples);
     std::vector<double> side;  // sine, by sample
@@ -461,7 +461,7 @@ StrokeSamples lean_holder(StrokeSamples trace, const HolderOptions& options) {
     if (std::ranges::any_of(trace.samples, [](const StrokeSample& s) { return s.tilt != Vec2(0); })) return trace;
     const double string = lean_string(options);
     const Vec2 ahead = initial_direction(trace.samples, options);
-    const std::vector<Turning> turning = turnings_of(trace.samples, options, ahead);
+    const std::vector<Turning> turning = turnings_of(trace, options, ahead);
     Vec2 before(trace.samples.front().position), dragged = before - string * ahead;
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
         StrokeSample& s = trace.samples[i];
@@ -479,7 +479,8 @@ StrokeSamples lean_holder(StrokeSamples trace, const HolderOptions& options) {
 }
 
 StrokeSamples add_turn_samples(const StrokeSamples& trace, const HolderOptions& options) {
-    if (options.tip_lag.empty() || trace.samples.empty() || !trace.flat || !is_lifted_at_turns(options)) return trace;
+    if (options.tip_lag.empty() || trace.samples.empty() || !trace.flat || !is_lifted_at_turns(trace, options))
+        return trace;
     if (is_dot(trace.samples, options)) return trace;
     const Vec2 ahead = initial_direction(trace.samples, options);
     StrokeSamples out = trace;
@@ -509,7 +510,7 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     const Vec2 ahead = initial_direction(trace.samples, options);
     const bool dot = is_dot(trace.samples, options);
     const Vec2 off = dot && options.dot_place ? options.dot_place(trace) : Vec2{0};
-    if (!dot && options.across) lift_to_other_side(trace, options, ahead);
+    if (!dot && options.across && trace.stencil.empty()) lift_to_other_side(trace, options, ahead);
     const bool pressed = set_down(trace, options, ahead, dot);
     set_down_plumb(trace, options);
     // Over a convex surface a blade's point meets a surface that falls ahead of it, however softly it lands: it would
@@ -521,7 +522,7 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     BladeRoll blade(options.tip_lag_turn, trace.samples.front().roll);
     const double turn_leans = kLeanTurns * options.tip_lag_turn;
     double since_turn = 1e9, over = 0;  // metres; how much it turned back there
-    const std::vector<Turning> turning = turnings_of(trace.samples, options, ahead);
+    const std::vector<Turning> turning = turnings_of(trace, options, ahead);
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
         StrokeSample& s = trace.samples[i];
         const Vec2 p(s.position);

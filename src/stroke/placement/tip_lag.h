@@ -133,12 +133,12 @@ StrokeSamples add_turn_samples(const StrokeSamples& trace, const HolderOptions& 
 /// ferrule across its broad side, of a blade along it. A sponge is pressed straight down. Then its middle lies where
 /// the trace was (`options.dot_place`), whichever way the surface leans. Pressed down plumb the hair would fall to any
 /// side. Where the path reverses, the tip lag passes through zero. A wide ferrule is lifted there and set down to its
-/// other side, with the ink up to the place where the path turns; a turn by up to 106° keeps it down. A trace that
-/// begins pressed gets samples before its first one, at the same place and earlier in time, whose pressure rises to the
-/// first; the holder moves at `kSetDownPace` times the trace's speed, so that the tip touches first and trails. It
-/// leans ahead by 0.12 rad more, which fades over 4 `tip_lag_turn`; not where the lean of its make already tilts it
-/// ahead by more than that. A blade leans so at any landing, over `blade_landing` at least. It turns as late as the
-/// string (`BladeRoll`).
+/// other side, with the ink up to the place where the path turns; a turn by up to 106° or along a stencil keeps it
+/// down. A trace that begins pressed gets samples before its first one, at the same place and earlier in time, whose
+/// pressure rises to the first; the holder moves at `kSetDownPace` times the trace's speed, so that the tip touches
+/// first and trails. It leans ahead by 0.12 rad more, which fades over 4 `tip_lag_turn`; not where the lean of its make
+/// already tilts it ahead by more than that. A blade leans so at any landing, over `blade_landing` at least. It turns
+/// as late as the string (`BladeRoll`).
 ///
 /// A holder upright to 0.05 rad sets the brush down plumb and reaches its lean within 0.3 lengths of the tuft.
 ///
