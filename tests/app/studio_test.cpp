@@ -358,7 +358,8 @@ TEST_F(StudioProgram, ABrushDippedOnOneSideReplays) {
     ASSERT_GE(strokes.size(), 3u);  // a path that leaves the bowl makes two strokes
     EXPECT_EQ(stroke::kind_of(strokes[0]), stroke::EntryKind::wipe);
     EXPECT_EQ(stroke::kind_of(strokes[1]), stroke::EntryKind::dip);
-    for (int k = 0; k < 2; ++k) EXPECT_EQ(strokes[k].get<stroke::BrushAction>().extent.side, 0.5);
+    EXPECT_EQ(std::get<stroke::Wipe>(strokes[0].get<stroke::BrushAction>().what).side, 0.5);
+    EXPECT_EQ(std::get<stroke::Dip>(strokes[1].get<stroke::BrushAction>().what).side, 0.5);
     EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], test::stored_hash(path("work.tuft")));
 }
 

@@ -206,9 +206,15 @@ stroke::LayerEdit layer_edit_of(Bytes& bytes) {
     return edit;
 }
 
+stroke::BrushChange brush_change_of(Bytes& bytes, int what) {
+    if (what == 0) return stroke::Rinse{};
+    if (what == 1) return stroke::Reshape{};
+    const double depth = std::abs(bytes.real()), amount = std::abs(bytes.real()), side = bytes.real();
+    if (what == 2) return stroke::Dip{.depth = depth, .amount = amount, .side = side};
+    return stroke::Wipe{.depth = depth, .amount = amount, .side = side};
+}
+
 stroke::JournalEntry entry_of(Bytes& bytes, const Costly& how) {
-    using Kind = stroke::BrushActionKind;
-    static constexpr Kind kActions[] = {Kind::rinse, Kind::reshape, Kind::dip, Kind::wipe};
     const int what = bytes.below(16);
     const stroke::PaintStroke s = stroke_of(bytes, how);
     if (what == 4) return stroke::Dry{.seconds = 0.5 + std::abs(bytes.real()), .down = s.settings.down};
@@ -228,15 +234,12 @@ stroke::JournalEntry entry_of(Bytes& bytes, const Costly& how) {
     if (what == 7)
         return stroke::MaskEdit{.mask = {.name = "m", .direction = s.settings.down, .within = 1, .soft = 0.5}};
     if (what > 7) return s;
-    stroke::BrushAction action{.kind = kActions[what],
+    return stroke::BrushAction{.what = brush_change_of(bytes, what),
                                .brush = s.brush,
                                .ink = s.ink,
                                .seed = s.seed,
                                .dip = s.settings.dip,
                                .spine = s.settings.spine};
-    if (action.kind == Kind::dip || action.kind == Kind::wipe)
-        action.extent = {.depth = std::abs(bytes.real()), .amount = std::abs(bytes.real()), .side = bytes.real()};
-    return action;
 }
 
 void check_ink(const ink::Canvas& canvas) {

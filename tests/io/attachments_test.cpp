@@ -39,7 +39,7 @@ std::vector<stroke::JournalEntry> journal() {
         entry.hidden = k == 3;
         entry.group = {4, "leaves.svg"};
     }
-    entries.emplace_back(stroke::BrushAction{.brush = "goat", .extent = {.depth = 0.4}}).id = 40;
+    entries.emplace_back(stroke::BrushAction{.what = stroke::Dip{.depth = 0.4}, .brush = "goat"}).id = 40;
     return entries;
 }
 

@@ -277,12 +277,12 @@ TEST(Inkml, WhatIsDoneWithTheBrushStandsOnTheTraceInOrder) {
     EXPECT_EQ(kind(0, 2), stroke::EntryKind::reshape);
     EXPECT_EQ(std::get<stroke::Dry>(traces[0].before[3]).seconds, 0);
     EXPECT_EQ(std::get<stroke::Dry>(traces[0].before[4]).seconds, 2.5);
-    EXPECT_EQ(action(0, 1).extent, stroke::Extent{});
+    EXPECT_EQ(action(0, 1).what, stroke::BrushChange(stroke::Dip{}));
     ASSERT_EQ(traces[1].before.size(), 2u);
     EXPECT_EQ(action(1, 0).ink, "");
-    EXPECT_EQ(action(1, 0).extent, (stroke::Extent{.depth = 0.2}));
+    EXPECT_EQ(action(1, 0).what, stroke::BrushChange(stroke::Dip{.depth = 0.2}));
     EXPECT_EQ(kind(1, 1), stroke::EntryKind::wipe);
-    EXPECT_EQ(action(1, 1).extent, (stroke::Extent{.amount = 0.3}));
+    EXPECT_EQ(action(1, 1).what, stroke::BrushChange(stroke::Wipe{.amount = 0.3}));
     EXPECT_TRUE(traces[2].before.empty());
     EXPECT_FALSE(traces[0].pressed) << "no P and no F";
 
@@ -297,7 +297,7 @@ TEST(Inkml, WhatIsDoneWithTheBrushStandsOnTheTraceInOrder) {
             }
             if (const auto* done = std::get_if<stroke::BrushAction>(&was)) {
                 EXPECT_EQ(std::get<stroke::BrushAction>(now).ink, done->ink);
-                EXPECT_EQ(std::get<stroke::BrushAction>(now).extent, done->extent);
+                EXPECT_EQ(std::get<stroke::BrushAction>(now).what, done->what);
             }
         }
     }
@@ -462,10 +462,11 @@ TEST(Inkml, EntriesOfEveryKindThatAFileCanSayComeBack) {
     entries.emplace_back(s, "stroke");
     s.tool = stroke::Tool::eraser;
     entries.emplace_back(s, "eraser");
-    for (const auto kind : {stroke::BrushActionKind::dip, stroke::BrushActionKind::wipe, stroke::BrushActionKind::rinse,
-                            stroke::BrushActionKind::reshape})
-        entries.emplace_back(stroke::BrushAction{.kind = kind, .brush = "goat-small", .ink = "indigo", .seed = 3});
-    entries[2].get<stroke::BrushAction>().extent = {.depth = 0.25, .amount = 1.25, .side = -0.5};
+    for (const stroke::BrushChange& what :
+         {stroke::BrushChange(stroke::Dip{.depth = 0.25, .amount = 1.25, .side = -0.5, .time = 1.0 / 3}),
+          stroke::BrushChange(stroke::Wipe{.depth = 0.75, .amount = 0.1, .side = 0.5}),
+          stroke::BrushChange(stroke::Rinse{}), stroke::BrushChange(stroke::Reshape{})})
+        entries.emplace_back(stroke::BrushAction{.what = what, .brush = "goat-small", .ink = "indigo", .seed = 3});
     entries.emplace_back(stroke::Dry{.seconds = 2.5, .down = {0, -1, 0}});
     entries.emplace_back(stroke::WashPalette{});
     entries.emplace_back(stroke::Fill{.ink = "indigo", .layer = stroke::kPaletteLayer, .film = 0.5});

@@ -351,17 +351,16 @@ TEST(Project, EntriesOfEveryKindComeBack) {
     stroke.settings.dip = stroke::DipMode::persistent;
     stroke.settings.stabilise = 1.0 / 3;
     stroke.settings.pressure = stroke::PressureFrom::speed;
-    for (const auto kind : {stroke::BrushActionKind::rinse, stroke::BrushActionKind::dip,
-                            stroke::BrushActionKind::reshape, stroke::BrushActionKind::wipe}) {
-        stroke::BrushAction action{.kind = kind,
-                                   .brush = "wolf-small",
-                                   .ink = "cinnabar",
-                                   .seed = 5,
-                                   .dip = stroke::DipMode::persistent,
-                                   .spine = brush::SpineMethod::table};
-        if (kind == stroke::BrushActionKind::wipe) action.extent = {.depth = 1.0 / 3, .amount = 0.1, .side = -0.25};
-        entries.emplace_back(action);
-    }
+    for (const stroke::BrushChange& what :
+         {stroke::BrushChange(stroke::Rinse{}), stroke::BrushChange(stroke::Dip{.time = 1.0 / 3}),
+          stroke::BrushChange(stroke::Reshape{}),
+          stroke::BrushChange(stroke::Wipe{.depth = 1.0 / 3, .amount = 0.1, .side = -0.25})})
+        entries.emplace_back(stroke::BrushAction{.what = what,
+                                                 .brush = "wolf-small",
+                                                 .ink = "cinnabar",
+                                                 .seed = 5,
+                                                 .dip = stroke::DipMode::persistent,
+                                                 .spine = brush::SpineMethod::table});
     entries.emplace_back(stroke::Dry{.seconds = 1.0 / 3, .down = {0, 1.0 / 3, 0}});
     entries.emplace_back(stroke::WashPalette{});
     entries.emplace_back(stroke::Fill{.ink = "indigo", .layer = 2, .mask = 3, .film = 1.0 / 3});
@@ -385,7 +384,8 @@ TEST(Project, EntriesOfEveryKindComeBack) {
     }
     EXPECT_EQ(kinds.size(), std::variant_size_v<stroke::EntryContent>) << "a kind without an entry here";
     EXPECT_EQ(back[0].get<stroke::PaintStroke>().settings, entries[0].get<stroke::PaintStroke>().settings);
-    EXPECT_EQ(back[4].get<stroke::BrushAction>().extent, entries[4].get<stroke::BrushAction>().extent);
+    for (int i = 1; i <= 4; ++i)
+        EXPECT_EQ(back[i].get<stroke::BrushAction>().what, entries[i].get<stroke::BrushAction>().what);
     EXPECT_EQ(back[5].get<stroke::Dry>().down, entries[5].get<stroke::Dry>().down);
     EXPECT_EQ(back[7].get<stroke::Fill>(), entries[7].get<stroke::Fill>());
     EXPECT_EQ(back[8].get<stroke::LayerEdit>(), entries[8].get<stroke::LayerEdit>());

@@ -25,7 +25,7 @@ MotionProgram program(double lean) {
     p.strokes[0].seed = 99;
     p.strokes[0].label = "heng";
     p.strokes[0].settings = stroke::StrokeSettings{};
-    p.strokes[0].before = {stroke::BrushAction{.kind = stroke::BrushActionKind::wipe, .extent = {.amount = 0.5}}};
+    p.strokes[0].before = {stroke::BrushAction{.what = stroke::Wipe{.amount = 0.5}}};
     const Quat rotation = glm::angleAxis(lean, Vec3(1, 0, 0));
     motion::Move approach{motion::MoveKind::approach, 0, {}}, stroke{motion::MoveKind::stroke, 0, {}};
     approach.points = {{{{0.01, 0.02, 0.06}, rotation, 0}}, {{{0.01, 0.02, 0.02}, rotation, 0.5}}};

@@ -38,8 +38,8 @@ PaintStroke dab(int i, const std::string& ink) {
     return s;
 }
 
-BrushAction brush_action(BrushActionKind kind, const std::string& ink, const Extent& extent) {
-    return {.kind = kind, .brush = kBrush, .ink = ink, .extent = extent, .dip = DipMode::persistent};
+BrushAction brush_action(const BrushChange& what, const std::string& ink) {
+    return {.what = what, .brush = kBrush, .ink = ink, .dip = DipMode::persistent};
 }
 
 TEST(Conservation, AThousandStrokesKeepEachPigment) {
@@ -62,8 +62,8 @@ TEST(Conservation, AThousandStrokesKeepEachPigment) {
     for (int i = 0; i < 1000; ++i) {
         if (i % 20 == 0) {
             ink = kInks[i / 20 % kPigments];
-            tend(brush_action(BrushActionKind::wipe, ink, {.depth = 0.6, .amount = 0.5}));
-            tend(brush_action(BrushActionKind::dip, ink, {.depth = 0.5, .side = i % 40 ? 0.5 : 0.0}));
+            tend(brush_action(Wipe{.depth = 0.6, .amount = 0.5}, ink));
+            tend(brush_action(Dip{.depth = 0.5, .side = i % 40 ? 0.5 : 0.0}, ink));
         }
         if (i % 100 == 99) painting.paint(Dry{i == 999 ? 0 : 0.3});
         touched += painting.paint(dab(i, ink)).touched();
@@ -83,13 +83,12 @@ TEST(Conservation, ADoubleLoadedFlatKeepsBothInks) {
     const Model model = sheet();
     Document painting(model, {.substrate = "porcelain", .undo_bytes = 1});
     const auto in_hair = [&](int p) { return painting.brushes().find(flat)->reservoir.pigment(p); };
-    const auto act = [&](BrushActionKind kind, const char* ink, const Extent& extent) {
-        painting.paint(
-            BrushAction{.kind = kind, .brush = flat, .ink = ink, .extent = extent, .dip = DipMode::persistent});
+    const auto act = [&](const BrushChange& what, const char* ink) {
+        painting.paint(BrushAction{.what = what, .brush = flat, .ink = ink, .dip = DipMode::persistent});
     };
-    act(BrushActionKind::dip, kInks[0], {});
-    act(BrushActionKind::wipe, kInks[0], {.amount = 0.4});
-    act(BrushActionKind::dip, kInks[1], {.side = 0.5});
+    act(Dip{}, kInks[0]);
+    act(Wipe{.amount = 0.4}, kInks[0]);
+    act(Dip{.side = 0.5}, kInks[1]);
     const std::array supplied{in_hair(0), in_hair(1)};
     ASSERT_GT(supplied[0], 0);
     ASSERT_GT(supplied[1], 0);

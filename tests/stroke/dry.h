@@ -10,8 +10,7 @@ namespace tuft::stroke {
 inline const std::string kBrush = "mixed-small";
 
 inline BrushAction wipe(double amount, std::uint64_t seed) {
-    return {
-        .kind = BrushActionKind::wipe, .brush = kBrush, .ink = "carbon", .extent = {.amount = amount}, .seed = seed};
+    return {.what = Wipe{.amount = amount}, .brush = kBrush, .ink = "carbon", .seed = seed};
 }
 
 inline PaintStroke drag(std::uint64_t seed, double speed = 0.06, int rate = 200) {

@@ -383,14 +383,13 @@ TEST(DryBrush, AShallowDipIsDarkAtTheTipAndReplays) {
     const BrushAction rinse = wipe(1, 9);
     painting.paint(rinse);
     BrushAction dip = wipe(1, 9);
-    dip.kind = BrushActionKind::dip;
     dip.dip = DipMode::persistent;
     dip.ink = "cinnabar";
-    dip.extent = {.depth = 1, .amount = 0.7};
+    dip.what = Dip{.amount = 0.7};
     painting.paint(dip);
     EXPECT_NEAR(painting.brushes().find(kBrush)->reservoir.fullness(), 0.7, 1e-12);
     dip.ink = "carbon";
-    dip.extent = {.depth = 0.15, .amount = 1};
+    dip.what = Dip{.depth = 0.15};
     painting.paint(dip);
     const ink::Reservoir& tuft = painting.brushes().find(kBrush)->reservoir;
     const std::size_t cells = tuft.n_cells();

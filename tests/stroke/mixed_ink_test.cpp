@@ -12,15 +12,15 @@ namespace {
 
 const std::string kBrush = "wolf-medium";
 
-BrushAction brush_action(BrushActionKind kind, const std::string& ink, const Extent& extent) {
-    return {.kind = kind, .brush = kBrush, .ink = ink, .extent = extent, .dip = DipMode::persistent};
+BrushAction brush_action(const BrushChange& what, const std::string& ink) {
+    return {.what = what, .brush = kBrush, .ink = ink, .dip = DipMode::persistent};
 }
 
 /// A brush with cinnabar in its right flank and gamboge in the left.
 void load_sides(Document& painting) {
-    painting.paint(brush_action(BrushActionKind::dip, "gamboge", {}));
-    painting.paint(brush_action(BrushActionKind::wipe, "gamboge", {.amount = 1, .side = 0.5}));
-    painting.paint(brush_action(BrushActionKind::dip, "cinnabar", {.side = 0.5}));
+    painting.paint(brush_action(Dip{}, "gamboge"));
+    painting.paint(brush_action(Wipe{.amount = 1, .side = 0.5}, "gamboge"));
+    painting.paint(brush_action(Dip{.side = 0.5}, "cinnabar"));
 }
 
 /// Drawn over the sheet with the holder at right angles to it; `turn` about the holder: where the
@@ -93,13 +93,12 @@ TEST(MixedInk, ADoubleLoadedFlatKeepsTheMassOfEachInk) {
     const std::string flat = "flat-12*0.4";
     const Model model = sheet();
     Document painting(model);
-    const auto prepare = [&](BrushActionKind kind, const std::string& ink, const Extent& extent) {
-        painting.paint(
-            BrushAction{.kind = kind, .brush = flat, .ink = ink, .extent = extent, .dip = DipMode::persistent});
+    const auto prepare = [&](const BrushChange& what, const std::string& ink) {
+        painting.paint(BrushAction{.what = what, .brush = flat, .ink = ink, .dip = DipMode::persistent});
     };
-    prepare(BrushActionKind::dip, "gamboge", {});
-    prepare(BrushActionKind::wipe, "gamboge", {.amount = 1, .side = 0.5});
-    prepare(BrushActionKind::dip, "cinnabar", {.side = 0.5});
+    prepare(Dip{}, "gamboge");
+    prepare(Wipe{.amount = 1, .side = 0.5}, "gamboge");
+    prepare(Dip{.side = 0.5}, "cinnabar");
     std::array<double, 2> whole;
     for (int p = 0; p < 2; ++p) whole[p] = painting.brushes().find(flat)->reservoir.pigment(p);
     for (int i = 0; i < 2; ++i) {
@@ -141,13 +140,12 @@ TEST(MixedInk, ReplaysToTheBitOnAnyNumberOfThreads) {
 
 TEST(MixedInk, BrushActionsWithASideComeBackFromTheirText) {
     const Preparation c = preparation_of("dip:cinnabar,depth=0.25,side=-0.5");
-    EXPECT_EQ(std::get<BrushAction>(c).extent, (Extent{.depth = 0.25, .side = -0.5}));
+    EXPECT_EQ(std::get<BrushAction>(c).what, BrushChange(Dip{.depth = 0.25, .side = -0.5}));
     EXPECT_EQ(preparation_text(c), "dip:cinnabar,depth=0.25,side=-0.5");
     EXPECT_ANY_THROW(preparation_of("wipe,side=1.5"));
     EXPECT_ANY_THROW(preparation_of("rinse,side=0.5"));
-    const BrushAction entry =
-        brush_action(BrushActionKind::wipe, "carbon", {.depth = 0.5, .amount = 0.25, .side = 0.125});
-    EXPECT_EQ(written_and_read(entry).get<BrushAction>().extent, entry.extent);
+    const BrushAction entry = brush_action(Wipe{.depth = 0.5, .amount = 0.25, .side = 0.125}, "carbon");
+    EXPECT_EQ(written_and_read(entry).get<BrushAction>().what, entry.what);
 }
 
 }  // namespace

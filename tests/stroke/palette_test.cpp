@@ -37,7 +37,7 @@ PaintStroke through(const Vec3& at, std::uint32_t layer, const std::string& ink,
 }
 
 BrushAction rinse(const std::string& ink) {
-    return {.kind = BrushActionKind::rinse, .brush = kBrush, .ink = ink};
+    return {.what = Rinse{}, .brush = kBrush, .ink = ink};
 }
 
 std::vector<JournalEntry> mixing() {

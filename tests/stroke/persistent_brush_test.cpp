@@ -21,8 +21,8 @@ PaintStroke persistent_stroke(int row, const std::string& ink = "carbon", const 
     return s;
 }
 
-BrushAction action(BrushActionKind what, const std::string& ink = {}, const std::string& brush = kBrush) {
-    return {.kind = what, .brush = brush, .ink = ink, .dip = DipMode::persistent};
+BrushAction action(const BrushChange& what, const std::string& ink = {}, const std::string& brush = kBrush) {
+    return {.what = what, .brush = brush, .ink = ink, .dip = DipMode::persistent};
 }
 
 // How far the hair has yielded, radians.
@@ -47,9 +47,9 @@ TEST(PersistentBrush, InkRunsDownFromStrokeToStrokeAndADipFillsItUp) {
         left = r.ink_left;
         EXPECT_EQ(painting.brushes().find(kBrush)->reservoir.remaining(), left);
     }
-    painting.paint(action(BrushActionKind::dip, "carbon"));
+    painting.paint(action(Dip{}, "carbon"));
     EXPECT_NEAR(painting.brushes().find(kBrush)->reservoir.remaining() / capacity, 1, 1e-12);
-    painting.paint(action(BrushActionKind::rinse));
+    painting.paint(action(Rinse{}));
     EXPECT_EQ(painting.brushes().find(kBrush)->reservoir.remaining(), 0);
     const StrokeReport dry = painting.paint(persistent_stroke(3));
     EXPECT_TRUE(dry.touched());
@@ -62,10 +62,10 @@ TEST(PersistentBrush, HairKeepsItsSetUntilItIsCombed) {
     painting.paint(persistent_stroke(0, "carbon", kBrush, 0.6 * painting.materials().brush(kBrush).length));
     const double set = set_of(*painting.brushes().find(kBrush));
     ASSERT_GT(set, 0);
-    painting.paint(action(BrushActionKind::dip, "carbon"));
+    painting.paint(action(Dip{}, "carbon"));
     EXPECT_EQ(set_of(*painting.brushes().find(kBrush)), set);
     const double ink = painting.brushes().find(kBrush)->reservoir.remaining();
-    painting.paint(action(BrushActionKind::reshape));
+    painting.paint(action(Reshape{}));
     EXPECT_EQ(set_of(*painting.brushes().find(kBrush)), 0);
     EXPECT_EQ(painting.brushes().find(kBrush)->reservoir.remaining(), ink);
 }
@@ -74,16 +74,16 @@ TEST(PersistentBrush, WetnessFollowsTheInkAlsoInAReplay) {
     const Model model = sheet();
     const auto wetness = [](const Document& painting) { return painting.brushes().find(kBrush)->tuft.wetness; };
     Document painting(model);
-    painting.paint(action(BrushActionKind::dip, "carbon"));
+    painting.paint(action(Dip{}, "carbon"));
     EXPECT_EQ(wetness(painting), 1);
     painting.paint(persistent_stroke(0));
     EXPECT_LE(wetness(painting), 1);
-    painting.paint(action(BrushActionKind::rinse));
+    painting.paint(action(Rinse{}));
     EXPECT_EQ(wetness(painting), 0) << "rinsed and wiped";
     Document again(model);
     again.replay(painting.journal().entries());
     EXPECT_EQ(wetness(again), 0);
-    painting.paint(action(BrushActionKind::dip, "carbon"));
+    painting.paint(action(Dip{}, "carbon"));
     EXPECT_EQ(wetness(painting), 1);
 }
 
@@ -91,8 +91,8 @@ TEST(PersistentBrush, ACombedFullBrushIsAFreshOne) {
     const Model model = sheet();
     Document carry(model), each(model);
     carry.paint(persistent_stroke(0));
-    carry.paint(action(BrushActionKind::reshape));
-    carry.paint(action(BrushActionKind::dip, "carbon"));
+    carry.paint(action(Reshape{}));
+    carry.paint(action(Dip{}, "carbon"));
     carry.paint(persistent_stroke(1));
     PaintStroke a = persistent_stroke(0), b = persistent_stroke(1);
     a.settings.dip = b.settings.dip = DipMode::each;
@@ -111,7 +111,7 @@ TEST(PersistentBrush, AnotherInkIsDippedIntoUnlessLoadedBefore) {
     EXPECT_EQ(painting.brushes().find(kBrush)->dipped, "cinnabar");
     EXPECT_EQ(painting.brushes().find(kBrush)->reservoir.pigment(0), 0) << "washed before";
     // Told: a dip on top of what is left, which the next stroke keeps whichever of the two it names.
-    painting.paint(action(BrushActionKind::dip, "carbon"));
+    painting.paint(action(Dip{}, "carbon"));
     const double mixed = painting.brushes().find(kBrush)->reservoir.pigment(0);
     EXPECT_GT(mixed, 0);
     painting.paint(persistent_stroke(2, "cinnabar"));
@@ -125,12 +125,12 @@ std::vector<JournalEntry> session() {
     return {persistent_stroke(0),
             persistent_stroke(1),
             persistent_stroke(1, "cinnabar", "goat-small"),
-            action(BrushActionKind::reshape),
+            action(Reshape{}),
             persistent_stroke(2),
-            action(BrushActionKind::dip, "cinnabar"),
+            action(Dip{}, "cinnabar"),
             persistent_stroke(3),
-            action(BrushActionKind::rinse, {}, "goat-small"),
-            action(BrushActionKind::dip, "carbon", "goat-small"),
+            action(Rinse{}, {}, "goat-small"),
+            action(Dip{}, "carbon", "goat-small"),
             persistent_stroke(4, "cinnabar", "goat-small")};
 }
 
@@ -218,7 +218,7 @@ TEST(PersistentBrush, ACancelledStrokeLeavesTheBrushAsItWas) {
     painting.cancel();
     EXPECT_EQ(painting.brushes().find(kBrush)->reservoir.remaining(), ink);
     EXPECT_EQ(set_of(*painting.brushes().find(kBrush)), set);
-    EXPECT_THROW(painting.paint(action(BrushActionKind::dip, "no-such-ink")), Error);
+    EXPECT_THROW(painting.paint(action(Dip{}, "no-such-ink")), Error);
     EXPECT_EQ(painting.journal().entries().size(), 1u);
 }
 

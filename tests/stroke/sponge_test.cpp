@@ -33,8 +33,8 @@ PaintStroke dab(const Vec2& at, double depth, bool lift = true) {
     return s;
 }
 
-BrushAction brush_action(BrushActionKind kind, double amount = 1) {
-    return {.kind = kind, .brush = kSponge, .ink = "indigo", .extent = {.amount = amount}, .dip = DipMode::persistent};
+BrushAction brush_action(const BrushChange& what) {
+    return {.what = what, .brush = kSponge, .ink = "indigo", .dip = DipMode::persistent};
 }
 
 double in_sponge(const Document& painting) {
@@ -113,10 +113,10 @@ TEST(Sponge, SoaksUpWetInkAndGivesItBack) {
     const Model model = sheet({}, 256);
     const brush::Preset preset = brush::load_preset(kSponge);
     Document wrung(model, {.substrate = "porcelain"});
-    wrung.paint(brush_action(BrushActionKind::dip));
+    wrung.paint(brush_action(Dip{}));
     wrung.paint(dab({0, 0}, 6e-3, false));
     const double pool = on_sheet(wrung, model);
-    wrung.paint(brush_action(BrushActionKind::rinse));
+    wrung.paint(brush_action(Rinse{}));
     ASSERT_EQ(in_sponge(wrung), 0);
     const StrokeReport lifts = wrung.paint(dab({0, 0}, 4e-3));
     EXPECT_LT(lifts.ink_given, 0);

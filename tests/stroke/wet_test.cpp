@@ -176,12 +176,12 @@ TEST(WetInk, ADrippingTuftLeavesDripsOnAWallAndAFullOneDoesNot) {
     for (int i = 0; i < 2; ++i) {
         Document painting(model, {.substrate = "porcelain"});
         PaintStroke line = wet_line("carbon");
-        const BrushAction dip{.brush = kBrush, .ink = "carbon", .extent = {.amount = i ? 1.5 : 1}};
+        const BrushAction dip{.what = Dip{.amount = i ? 1.5 : 1}, .brush = kBrush, .ink = "carbon"};
         line.settings.down = {0, -1, 0};  // the sheet as a wall
         painting.paint(dip);
         const double held = in_hair(painting, 0);
         const double capacity = painting.materials().brush(kBrush).capacity * ink::kFilmPerVolume;
-        EXPECT_NEAR(held / capacity, dip.extent.amount, 1e-9);
+        EXPECT_NEAR(held / capacity, i ? 1.5 : 1, 1e-9);
         painting.paint(line);
         const Dry wait{.seconds = 2, .down = line.settings.down};
         painting.paint(wait);

@@ -4,16 +4,16 @@ namespace tuft::app {
 
 void act_on_brush(PaintContext& context, JournalEditor& journal, const ActOnBrush& command) {
     context.work.autosave.prepare(*context.work.document, command.brush, command.ink);
-    if (command.action == stroke::EntryKind::dry) return journal.add(stroke::Dry{.seconds = command.seconds});
-    if (command.action == stroke::EntryKind::wash) return journal.add(stroke::WashPalette{});
-    stroke::BrushAction action{.kind = stroke::brush_action_of(command.action),
-                               .brush = command.brush,
-                               .extent = command.extent,
-                               .dip = stroke::DipMode::persistent};
+    stroke::BrushAction action{.what = command.what, .brush = command.brush, .dip = stroke::DipMode::persistent};
     // A brush that is not held yet begins full of the chosen ink.
-    if (action.kind == stroke::BrushActionKind::dip || !context.work.document->brushes().find(command.brush))
+    if (std::holds_alternative<stroke::Dip>(action.what) || !context.work.document->brushes().find(command.brush))
         action.ink = command.ink;
     journal.add(std::move(action));
+}
+
+void tend_ink(PaintContext& context, JournalEditor& journal, const TendInk& command) {
+    context.work.autosave.prepare(*context.work.document, "", "");
+    std::visit([&](const auto& what) { journal.add(what); }, command.what);
 }
 
 void fill_model(PaintContext& context, JournalEditor& journal, const FillModel& command) {

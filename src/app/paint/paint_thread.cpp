@@ -127,6 +127,7 @@ void PaintThread::perform(Command& command) {
                           [&](RedoStroke&) { journal_.redo(); },
                           [&](EditStrokes& c) { journal_.edit(c); },
                           [&](ActOnBrush& c) { act_on_brush(context, journal_, c); },
+                          [&](TendInk& c) { tend_ink(context, journal_, c); },
                           [&](FillModel& c) { fill_model(context, journal_, c); },
                           [&](ChangeLayers& c) { change_layers(context, journal_, c); },
                           [&](ChangeMasks& c) { change_masks(context, journal_, c); },

@@ -34,15 +34,12 @@ void StrokePainter::begin(const BeginStroke& command) {
 void StrokePainter::load_tip(const BeginStroke& command, std::size_t& made) {
     if (command.tip_ink.empty() || command.persistent || command.erases) return;
     context_.work.autosave.prepare(*context_.work.document, command.brush, command.tip_ink);
-    const stroke::BrushActionKind dip = stroke::BrushActionKind::dip, wipe = stroke::BrushActionKind::wipe;
-    const stroke::Extent tip{.depth = command.tip_depth};
     const stroke::BrushAction steps[] = {
-        {.kind = dip, .brush = command.brush, .ink = command.ink},
-        {.kind = wipe, .brush = command.brush, .extent = tip, .dip = stroke::DipMode::persistent},
-        {.kind = dip,
+        {.what = stroke::Dip{}, .brush = command.brush, .ink = command.ink},
+        {.what = stroke::Wipe{.depth = command.tip_depth}, .brush = command.brush, .dip = stroke::DipMode::persistent},
+        {.what = stroke::Dip{.depth = command.tip_depth},
          .brush = command.brush,
          .ink = command.tip_ink,
-         .extent = tip,
          .dip = stroke::DipMode::persistent}};
     for (const stroke::BrushAction& step : steps) {
         context_.work.document->paint(step);

@@ -180,24 +180,22 @@ void push_narrow_buttons(const Ui& ui) {
 // What is done with a brush between strokes.
 void add_brush_actions(const InkParts& s) {
     Ui& ui = s.ui;
-    const auto act = [&](stroke::EntryKind action, double depth = 1, double side = 0) {
+    const auto act = [&](const stroke::BrushChange& what) {
         bring_in_colour(s.colours, s.brush.ink, &s.work);
-        s.work.post(ActOnBrush{
-            .action = action, .brush = s.brush.preset, .ink = s.brush.ink, .extent = {.depth = depth, .side = side}});
+        s.work.post(ActOnBrush{.what = what, .brush = s.brush.preset, .ink = s.brush.ink});
     };
     push_narrow_buttons(ui);
     const float quarter = part_of_row(ui, 4);
     const bool writes = !s.reported.file.viewing;
     if (ui.button("Dip", "Fills the brush with the chosen ink; what is in it stays and mixes", quarter, writes))
-        act(stroke::EntryKind::dip, s.brush.dip_depth, s.brush.dip_side);
+        act(stroke::Dip{.depth = s.brush.dip_depth, .side = s.brush.dip_side});
     ImGui::SameLine();
     if (ui.button("Wipe", "On a rag: the ink goes, as far as the brush is dipped", quarter, writes))
-        act(stroke::EntryKind::wipe, s.brush.dip_depth, s.brush.dip_side);
+        act(stroke::Wipe{.depth = s.brush.dip_depth, .side = s.brush.dip_side});
     ImGui::SameLine();
-    if (ui.button("Rinse", "Washes it: no ink left, hair straight and together", quarter, writes))
-        act(stroke::EntryKind::rinse);
+    if (ui.button("Rinse", "Washes it: no ink left, hair straight and together", quarter, writes)) act(stroke::Rinse{});
     ImGui::SameLine();
-    if (ui.button("Comb", "Hair straight and together, the ink stays", 0, writes)) act(stroke::EntryKind::reshape);
+    if (ui.button("Comb", "Hair straight and together, the ink stays", 0, writes)) act(stroke::Reshape{});
     ImGui::PopStyleVar(2);
     ui.slider(
         "How deep", s.brush.dip_depth, {0.05, 1, "%.0f %%", 0.01},
@@ -242,10 +240,10 @@ void wet_row(const InkParts& s) {
     const float half = part_of_row(ui, 2);
     const bool writes = !s.reported.file.viewing;
     if (ui.button("1 min", "Lets wet ink flow and dry for a minute", half, writes))
-        s.work.post(ActOnBrush{.action = stroke::EntryKind::dry, .brush = s.brush.preset, .seconds = 60});
+        s.work.post(TendInk{stroke::Dry{.seconds = 60}});
     ImGui::SameLine();
     if (ui.button("Dry", "Waits until all ink is dry; what is painted then lies over it", part_of_row(ui, 1), writes))
-        s.work.post(ActOnBrush{.action = stroke::EntryKind::dry, .brush = s.brush.preset});
+        s.work.post(TendInk{stroke::Dry{}});
     ImGui::PopStyleVar(2);
 }
 

@@ -62,7 +62,7 @@ void palette_panel(Session& s) {
     tool(PaletteTool::pick, "Take", "Click: the mixture there becomes an ink of its own");
     const bool writes = !s.reported.file.viewing;
     if (ui.button("Wash", "Cleans the palette; Undo brings it back", third, writes))
-        s.paint_thread->post(ActOnBrush{.action = stroke::EntryKind::wash});
+        s.paint_thread->post(TendInk{stroke::WashPalette{}});
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float picture = ImGui::GetContentRegionAvail().x;
     p.x = static_cast<double>(at.x);
@@ -82,8 +82,7 @@ void palette_panel(Session& s) {
     if (p.tool == PaletteTool::pour)
         ui.slider("Pool", p.radius, {0.003, 0.02, "%.0f mm", kMillimetre}, "How wide, to each side");
     else if (ui.button("Rinse the brush", "No ink left in it, hair straight and together", 0, writes))
-        s.paint_thread->post(
-            ActOnBrush{.action = stroke::EntryKind::rinse, .brush = s.brush.preset, .ink = s.brush.ink});
+        s.paint_thread->post(ActOnBrush{.what = stroke::Rinse{}, .brush = s.brush.preset, .ink = s.brush.ink});
     ImGui::End();
 }
 

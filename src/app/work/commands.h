@@ -38,12 +38,14 @@ struct BeginStroke {
     double tip_depth = 0.3;  ///< of that ink, fraction of the tuft's length
     bool joined = false;     ///< is undone together with the step before
 };
-/// Dips, rinses, wipes or reshapes a brush, or dries the ink.
+/// Dips, rinses, wipes or reshapes a brush.
 struct ActOnBrush {
-    stroke::EntryKind action = stroke::EntryKind::dip;
+    stroke::BrushChange what;
     std::string brush, ink;
-    double seconds = 0;          ///< of drying; 0: until dry
-    stroke::Extent extent = {};  ///< of a dip or a wipe
+};
+/// All layers flow and dry for a while, or all ink leaves the palette.
+struct TendInk {
+    std::variant<stroke::Dry, stroke::WashPalette> what;
 };
 /// Poses of the ferrule that continue the stroke.
 struct ExtendStroke {
@@ -198,8 +200,8 @@ struct RestoreSnapshot {
 };
 using Command =
     std::variant<AttachToProject, DetachFromProject, TakeSnapshot, RenameSnapshot, ShowSnapshot, RestoreSnapshot,
-                 BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing, PaintText, ActOnBrush, UndoStroke,
-                 RedoStroke, SaveProject, RetrySaving, ExportModel, ExportSheets, ExportFilm, EditStrokes,
+                 BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing, PaintText, ActOnBrush, TendInk,
+                 UndoStroke, RedoStroke, SaveProject, RetrySaving, ExportModel, ExportSheets, ExportFilm, EditStrokes,
                  HighlightStrokes, FillModel, ChangeLayers, SendTexture, PickInk, TakeInk, RecolourInk,
                  PreviewSubstrate, ChangeMasks, ChangeParts, ShowMask, LookFrom>;
 

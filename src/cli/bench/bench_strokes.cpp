@@ -219,8 +219,7 @@ double stamps_per_second(const stroke::Model& model, int texels, double wiped, c
     const Drag drag{.texels = texels, .brush = brush};
     painting.use(dragged_brush(model, drag));
     stroke::PaintStroke s = dragged(model, drag);
-    const stroke::BrushAction wipe{
-        .kind = stroke::BrushActionKind::wipe, .brush = s.brush, .ink = s.ink, .extent = {.amount = wiped}};
+    const stroke::BrushAction wipe{.what = stroke::Wipe{.amount = wiped}, .brush = s.brush, .ink = s.ink};
     if (wiped > 0) s.settings.dip = stroke::DipMode::persistent;
     std::vector<double> runs;
     for (int repeat = 0; repeat < repeats; ++repeat) {

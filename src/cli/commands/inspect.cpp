@@ -98,24 +98,24 @@ std::map<std::uint64_t, GroupSum> groups_of(const std::vector<stroke::JournalEnt
 nlohmann::json entry_to_json(const stroke::JournalEntry& entry) {
     const stroke::PaintStroke* stroke = entry.as<stroke::PaintStroke>();
     const stroke::BrushAction* action = entry.as<stroke::BrushAction>();
-    const stroke::Extent extent = action ? action->extent : stroke::Extent{};
     const stroke::DipMode dip = stroke ? stroke->settings.dip : action ? action->dip : stroke::DipMode::each;
-    return {{"id", entry.id},
-            {"group", entry.group.id},
-            {"action", stroke::name_of(stroke::kind_of(entry))},
-            {"dip", stroke::name_of(dip)},
-            {"depth", extent.depth},
-            {"amount", extent.amount},
-            {"side", extent.side},
-            {"label", entry.label},
-            {"layer", stroke::layer_of(entry)},
-            {"on", stroke::on_palette(entry) ? "palette" : "model"},
-            {"mask", stroke::mask_of(entry)},
-            {"tool", stroke && stroke->erases() ? "eraser" : "brush"},
-            {"brush", stroke::brush_of(entry)},
-            {"ink", stroke::ink_of(entry)},
-            {"samples", stroke::samples_of(entry).samples.size()},
-            {"hidden", entry.hidden}};
+    nlohmann::json out{{"id", entry.id},
+                       {"group", entry.group.id},
+                       {"action", stroke::name_of(stroke::kind_of(entry))},
+                       {"dip", stroke::name_of(dip)},
+                       {"label", entry.label},
+                       {"layer", stroke::layer_of(entry)},
+                       {"on", stroke::on_palette(entry) ? "palette" : "model"},
+                       {"mask", stroke::mask_of(entry)},
+                       {"tool", stroke && stroke->erases() ? "eraser" : "brush"},
+                       {"brush", stroke::brush_of(entry)},
+                       {"ink", stroke::ink_of(entry)},
+                       {"samples", stroke::samples_of(entry).samples.size()},
+                       {"hidden", entry.hidden}};
+    for (const stroke::ChangeNumber& n : stroke::numbers_of(stroke::Dip{})) out[n.name] = n.usual;
+    if (action)
+        for (const stroke::ChangeNumber& n : stroke::numbers_of(action->what)) out[n.name] = n.value;
+    return out;
 }
 
 /// What `inspect` says of a project.

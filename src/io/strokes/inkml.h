@@ -65,8 +65,8 @@ struct InkmlOptions {
 ///
 /// On a `trace` only, brush actions before the trace, in the order written: tuft:dip (an ink, or empty: the trace's
 /// own), tuft:wipe, tuft:rinse, tuft:reshape, tuft:wash (of the palette), tuft:dry (seconds, or empty: until dry),
-/// tuft:fill (an ink, or empty: the trace's own). A dip or wipe may have the attributes depth, amount and side of
-/// stroke::Extent. A fill may have the attributes film, region (all, part, chart), at, gradient (none, along, round),
+/// tuft:fill (an ink, or empty: the trace's own). A dip or wipe may have the numbers of stroke::Dip or stroke::Wipe as
+/// attributes. A fill may have the attributes film, region (all, part, chart), at, gradient (none, along, round),
 /// to_film, to_ink, from and to of stroke::Fill; points are "x y z" in mm, or in metres with a trailing m.
 ///
 /// Flat traces without P and F get a pressure that rises at the start, falls at the end and falls with speed, taken

@@ -113,24 +113,24 @@ double seconds_of(const InkmlText& file, const xml_node& node, std::string_view 
     return x;
 }
 
-stroke::Extent extent_of(const InkmlText& file, const xml_node& node, stroke::BrushActionKind kind) {
-    stroke::Extent extent;
-    const auto read = [&](const char* name, double& value) {
-        const std::string_view text = node.attribute(name).value();
-        if (text.empty()) return;
+stroke::BrushChange change_of(const InkmlText& file, const xml_node& node, stroke::EntryKind kind) {
+    stroke::BrushChange change = stroke::change_of(kind);
+    for (const stroke::ChangeNumber& n : stroke::numbers_of(change)) {
+        const std::string_view text = node.attribute(n.name).value();
+        if (text.empty()) continue;
+        double value = 0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
         if (error != std::errc{} || end != text.data() + text.size())
-            file.fail(node, Message("{} of a dip or wipe is a number, not '{}'", std::string(name), std::string(text)));
-    };
-    read("depth", extent.depth);
-    read("amount", extent.amount);
-    read("side", extent.side);
+            file.fail(node,
+                      Message("{} of a dip or wipe is a number, not '{}'", std::string(n.name), std::string(text)));
+        stroke::set_number(change, n.name, value);
+    }
     try {
-        stroke::check_extent(extent, kind);
+        stroke::check_change(change);
     } catch (const Error& e) {
         file.fail(node, e.message());
     }
-    return extent;
+    return change;
 }
 
 /// Four numbers an edge, metres.
@@ -163,9 +163,8 @@ stroke::Preparation preparation_of(const InkmlText& file, const xml_node& node, 
         fill.ink = text;
         return fill;
     }
-    stroke::BrushAction action{.kind = stroke::brush_action_of(kind)};
+    stroke::BrushAction action{.what = change_of(file, node, kind)};
     if (kind == stroke::EntryKind::dip) action.ink = text;
-    action.extent = extent_of(file, node, action.kind);
     return action;
 }
 

@@ -143,14 +143,10 @@ void add_sample(std::string& out, const stroke::StrokeSample& s, Kind kind, cons
 }
 
 std::string preparation_text(const stroke::Preparation& preparation, const Style& style) {
-    const auto part = [](const char* name, double value, double usual = 1) {
-        return value == usual ? std::string() : fmt::format(" {}=\"{}\"", name, value);
-    };
     std::string attributes, text;
     std::visit(Overloaded{[&](const stroke::BrushAction& action) {
-                              const stroke::Extent& extent = action.extent;
-                              attributes = part("depth", extent.depth) + part("amount", extent.amount) +
-                                           part("side", extent.side, 0);
+                              for (const stroke::ChangeNumber& n : stroke::numbers_of(action.what))
+                                  if (n.value != n.usual) attributes += fmt::format(" {}=\"{}\"", n.name, n.value);
                               text = xml_text(action.ink);
                           },
                           [&](const stroke::Dry& dry) { text = dry.seconds > 0 ? fmt::format("{}", dry.seconds) : ""; },

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/overloaded.h"
 #include "ink/exchange/uptake.h"
 #include "stroke/document/apply_area.h"
 #include "stroke/document/apply_fill.h"
@@ -22,32 +23,29 @@ LayerTiles tiles_of(std::uint32_t layer, const ink::Canvas& canvas) {
 }
 
 /// Part of the tuft's length that a dip wets: what is in the dish, and as far as ink rises over it.
-double wetted_part(const Extent& extent, const brush::Preset& preset) {
+double wetted_part(const Dip& dip, const brush::Preset& preset) {
     const double rise = ink::uptake_height(
         {.surface_tension = preset.surface_tension, .pore_radius = ink::pore_radius_of(preset.hair_diameter)},
-        extent.time);
-    return std::min(1.0, extent.depth + rise / preset.length);
+        dip.time);
+    return std::min(1.0, dip.depth + rise / preset.length);
 }
 
 void change_brush(BrushInHand& brush, const BrushAction& action, const ink::Mix& mix) {
-    const Extent& extent = action.extent;
-    switch (action.kind) {
-        case BrushActionKind::dip:
-            ink::dip(brush.reservoir, mix,
-                     {.depth = wetted_part(extent, brush.tuft.preset), .level = extent.amount, .side = extent.side});
-            brush.dipped = action.ink;
-            break;
-        case BrushActionKind::wipe:
-            ink::wipe(brush.reservoir, extent.amount, {extent.depth, extent.side});
-            break;
-        case BrushActionKind::rinse:
-            ink::rinse(brush.reservoir);
-            brush::reset(brush.tuft);
-            break;
-        case BrushActionKind::reshape:
-            brush::reshape(brush.tuft);
-            break;
-    }
+    std::visit(
+        Overloaded{[&](const Dip& dip) {
+                       ink::dip(brush.reservoir, mix,
+                                {.depth = wetted_part(dip, brush.tuft.preset), .level = dip.amount, .side = dip.side});
+                       brush.dipped = action.ink;
+                   },
+                   [&](const Wipe& wipe) {
+                       ink::wipe(brush.reservoir, wipe.amount, {.depth = wipe.depth, .side = wipe.side});
+                   },
+                   [&](const Rinse&) {
+                       ink::rinse(brush.reservoir);
+                       brush::reset(brush.tuft);
+                   },
+                   [&](const Reshape&) { brush::reshape(brush.tuft); }},
+        action.what);
     brush.tuft.ink_left = brush.reservoir.fullness();
     brush.tuft.wetness = wetness_of(brush.reservoir);
 }

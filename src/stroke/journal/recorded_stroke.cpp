@@ -16,16 +16,12 @@ std::string preparation_text(const Preparation& preparation) {
     const BrushAction* action = std::get_if<BrushAction>(&preparation);
     if (!action) return text;
     if (!action->ink.empty()) text += ":" + action->ink;
-    const auto add = [&](const char* name, double value, double usual) {
-        if (value == usual) return;
+    for (const ChangeNumber& n : numbers_of(action->what)) {
+        if (n.value == n.usual) continue;
         char number[40];
-        *std::to_chars(number, number + sizeof number - 1, value).ptr = 0;
-        text += std::string(",") + name + "=" + number;
-    };
-    add("depth", action->extent.depth, 1);
-    add("amount", action->extent.amount, 1);
-    add("side", action->extent.side, 0);
-    add("time", action->extent.time, 0);
+        *std::to_chars(number, number + sizeof number - 1, n.value).ptr = 0;
+        text += std::string(",") + n.name + "=" + number;
+    }
     return text;
 }
 
@@ -36,7 +32,7 @@ Preparation preparation_named(EntryKind kind, const std::string& text) {
     if (kind == EntryKind::wash) return WashPalette{};
     if (kind == EntryKind::fill) return Fill{};
     if (kind == EntryKind::stroke || keeps_texels(kind)) throw Error(Message("'{}' is no brush action", text));
-    return BrushAction{.kind = brush_action_of(kind)};
+    return BrushAction{.what = change_of(kind)};
 }
 
 }  // namespace
@@ -47,8 +43,7 @@ Preparation preparation_of(const std::string& text) {
     const std::size_t colon = std::min(head.find(':'), head.size());
     Preparation preparation = preparation_named(entry_kind_of(head.substr(0, colon)), text);
     BrushAction* action = std::get_if<BrushAction>(&preparation);
-    const bool dips = action && action->kind == BrushActionKind::dip,
-               wipes = action && action->kind == BrushActionKind::wipe;
+    const bool dips = action && std::holds_alternative<Dip>(action->what);
     if (colon + 1 < head.size() && !dips) throw Error(Message("'{}': only a dip names an ink", text));
     if (colon < head.size() && dips) action->ink = head.substr(colon + 1);
     while (end < text.size()) {
@@ -56,23 +51,19 @@ Preparation preparation_of(const std::string& text) {
         const std::string part = text.substr(end + 1, next - end - 1);
         const std::size_t equal = part.find('=');
         const std::string name = part.substr(0, std::min(equal, part.size()));
-        double* value = !dips && !wipes    ? nullptr
-                        : name == "depth"  ? &action->extent.depth
-                        : name == "amount" ? &action->extent.amount
-                        : name == "side"   ? &action->extent.side
-                        : name == "time"   ? &action->extent.time
-                                           : nullptr;
-        if (!value || equal == std::string::npos)
+        double value = 0;
+        if (!action || equal == std::string::npos || !set_number(action->what, name, value))
             throw Error(
                 Message("'{}' in '{}' is none of depth=PART, amount=PART and side=PART of a dip or wipe, or "
                         "time=SECONDS of a dip",
                         part, text));
         const char* last = part.data() + part.size();
-        const auto [rest, error] = std::from_chars(part.data() + equal + 1, last, *value);
+        const auto [rest, error] = std::from_chars(part.data() + equal + 1, last, value);
         if (error != std::errc{} || rest != last) throw Error(Message("'{}' in '{}' is no number", part, text));
+        set_number(action->what, name, value);
         end = next;
     }
-    if (action) check_extent(action->extent, action->kind);
+    if (action) check_change(action->what);
     return preparation;
 }
 

@@ -12,7 +12,6 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr double kLongestWait = 86400;  // seconds
 constexpr const char* kEntryKinds[] = {"stroke", "dip",  "rinse", "reshape", "dry", "layer",
                                        "mask",   "fill", "wipe",  "wash",    "part"};
 const std::string kNoName;
@@ -53,7 +52,7 @@ auto* ink_in(Entry& entry) {
 EntryKind kind_of(const EntryContent& content) {
     return std::visit(
         Overloaded{[](const PaintStroke&) { return EntryKind::stroke; },
-                   [](const BrushAction& action) { return entry_kind_of(action.kind); },
+                   [](const BrushAction& action) { return entry_kind_of(action.what); },
                    [](const Dry&) { return EntryKind::dry; }, [](const WashPalette&) { return EntryKind::wash; },
                    [](const Fill&) { return EntryKind::fill; }, [](const LayerEdit&) { return EntryKind::layer; },
                    [](const MaskEdit&) { return EntryKind::mask; }, [](const PartEdit&) { return EntryKind::part; }},
@@ -73,24 +72,17 @@ EntryKind entry_kind_of(const std::string& name) {
                 excerpt(name)));
 }
 
-EntryKind entry_kind_of(BrushActionKind kind) {
-    switch (kind) {
-        case BrushActionKind::dip:
-            return EntryKind::dip;
-        case BrushActionKind::wipe:
-            return EntryKind::wipe;
-        case BrushActionKind::rinse:
-            return EntryKind::rinse;
-        case BrushActionKind::reshape:
-            break;
-    }
-    return EntryKind::reshape;
+EntryKind entry_kind_of(const BrushChange& change) {
+    return std::visit(
+        Overloaded{[](const Dip&) { return EntryKind::dip; }, [](const Wipe&) { return EntryKind::wipe; },
+                   [](const Rinse&) { return EntryKind::rinse; }, [](const Reshape&) { return EntryKind::reshape; }},
+        change);
 }
 
-BrushActionKind brush_action_of(EntryKind kind) {
-    for (const BrushActionKind action :
-         {BrushActionKind::dip, BrushActionKind::wipe, BrushActionKind::rinse, BrushActionKind::reshape})
-        if (entry_kind_of(action) == kind) return action;
+BrushChange change_of(EntryKind kind) {
+    for (const BrushChange& change :
+         {BrushChange(Dip{}), BrushChange(Wipe{}), BrushChange(Rinse{}), BrushChange(Reshape{})})
+        if (entry_kind_of(change) == kind) return change;
     throw Error(Message("'{}' is nothing that is done with a brush alone", name_of(kind)));
 }
 
@@ -160,15 +152,6 @@ std::vector<std::string> inks_of(const JournalEntry& entry) {
 void check_seconds(double seconds) {
     if (!(seconds >= 0 && seconds <= kLongestWait))
         throw Error(Message("ink dries for 0 to {} seconds", static_cast<int>(kLongestWait)));
-}
-
-void check_extent(const Extent& e, BrushActionKind kind) {
-    if (!(e.depth >= 0 && e.depth <= 1)) throw Error("the depth of a dip or wipe is a part of the tuft, 0 to 1");
-    if (!(e.amount >= 0 && e.amount <= (kind == BrushActionKind::dip ? ink::kMostLevel : 1.0)))
-        throw Error("the amount of a wipe is 0 to 1, of a dip 0 to 1.5, above 1 dripping wet");
-    if (!(std::abs(e.side) <= 1)) throw Error("the side of a dip or wipe is a part of the tuft's width, -1 to 1");
-    if (!(e.time >= 0 && e.time <= kLongestWait) || (e.time > 0 && kind != BrushActionKind::dip))
-        throw Error("only a dip takes time, seconds in the dish");
 }
 
 std::string group_name(const std::filesystem::path& file) {

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "stroke/journal/entry/brush_action.h"
 #include "stroke/journal/entry/fill.h"
 #include "stroke/journal/entry/layers.h"
 #include "stroke/journal/entry/mask.h"
@@ -40,38 +41,6 @@ struct PaintStroke {
     PlaceNames names;  ///< of a stroke file, until `layer` and `mask` are set
 
     bool erases() const { return tool == Tool::eraser; }
-};
-
-/// What is done to a brush between strokes.
-enum class BrushActionKind {
-    dip,      ///< fills the tuft with ink; what it holds stays and mixes
-    wipe,     ///< removes part of its ink, as a rag does
-    rinse,    ///< removes all ink; the hair is straight and closed
-    reshape,  ///< straightens and closes the hair; the ink stays
-};
-
-/// How far a brush is dipped, or wiped.
-struct Extent {
-    double depth = 1;   ///< part of the tuft's length, from the tip, 0–1
-    double amount = 1;  ///< dip: part of the hair's capacity that is filled, 0–1.5; what is above 1 drips onto the
-                        ///< surface with wet ink. wipe: part of the ink that is removed, 0–1
-    double side = 0;  ///< part of the tuft's width, −1–1, from the right flank (> 0) or the left one (< 0); 0: all
-                      ///< of it. Right is the ferrule's +x: the right edge of a stroke drawn away from the hand
-    double time =
-        0;  ///< dip: s in the dish, upright, in which ink rises in the hair over its level (ink/exchange/uptake.h)
-
-    bool operator==(const Extent&) const = default;
-};
-
-/// An action on a brush between two strokes.
-struct BrushAction {
-    BrushActionKind kind = BrushActionKind::dip;
-    std::string brush;       ///< name of a preset; empty in a file: that of the next stroke
-    std::string ink;         ///< to dip into, and that a fresh brush holds; empty in a file: that of the next stroke
-    Extent extent;           ///< of `dip` and `wipe`; else 1, 1, 0
-    std::uint64_t seed = 0;  ///< of the hair of a fresh brush
-    DipMode dip = DipMode::each;                         ///< whether the action begins with a fresh brush
-    brush::SpineMethod spine = brush::SpineMethod::rod;  ///< of a fresh brush, as in `StrokeSettings`
 };
 
 /// All layers flow and dry for a while.
@@ -145,9 +114,9 @@ inline EntryKind kind_of(const JournalEntry& entry) {
 /// Returns the kind as a word, the name of its constant, and back. Back throws `Error` for any other word.
 std::string name_of(EntryKind kind);
 EntryKind entry_kind_of(const std::string& name);
-EntryKind entry_kind_of(BrushActionKind kind);
-/// Returns the action of this kind; throws `Error` for a kind that is none.
-BrushActionKind brush_action_of(EntryKind kind);
+EntryKind entry_kind_of(const BrushChange& change);
+/// Returns the change of this kind with its usual numbers; throws `Error` for a kind that is none.
+BrushChange change_of(EntryKind kind);
 
 /// Whether entries of this kind name a brush.
 bool has_brush(EntryKind kind);
@@ -175,8 +144,6 @@ std::vector<std::string> inks_of(const JournalEntry& entry);
 
 /// Throws `Error` for a drying time that is negative, not finite or too long.
 void check_seconds(double seconds);
-/// Throws `Error` for an extent out of the ranges of `Extent`.
-void check_extent(const Extent& extent, BrushActionKind kind);
 
 /// Returns a file's name as the name of a group: UTF-8 of at most `kMaxNameBytes`, with '?' for bytes that are no text.
 std::string group_name(const std::filesystem::path& file);

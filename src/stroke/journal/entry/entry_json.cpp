@@ -75,15 +75,15 @@ Tool tool_in(const json& j) {
     return *tool == "eraser" ? Tool::eraser : Tool::brush;
 }
 
-Extent extent_in(const json& j, BrushActionKind kind) {
-    Extent extent;
+BrushChange change_in(const json& j, EntryKind kind) {
+    BrushChange change = change_of(kind);
     try {
-        extent = {j.value("depth", 1.0), j.value("amount", 1.0), j.value("side", 0.0), j.value("time", 0.0)};
+        for (const ChangeNumber& n : numbers_of(change)) set_number(change, n.name, j.value(n.name, n.value));
     } catch (const json::exception&) {
         throw Error("how far a brush was dipped or wiped cannot be read");
     }
-    check_extent(extent, kind);
-    return extent;
+    check_change(change);
+    return change;
 }
 
 double seconds_in(const json& j) {
@@ -113,13 +113,13 @@ json json_of(const PaintStroke& stroke) {
     return j;
 }
 
+// Older versions look for depth and amount together.
 json json_of(const BrushAction& action) {
     json j = json_of(StrokeSettings{.spine = action.spine, .dip = action.dip});
-    if (action.extent == Extent{}) return j;
-    j["depth"] = action.extent.depth;
-    j["amount"] = action.extent.amount;
-    if (action.extent.side != 0) j["side"] = action.extent.side;
-    if (action.extent.time != 0) j["time"] = action.extent.time;
+    const std::vector<ChangeNumber> numbers = numbers_of(action.what);
+    if (std::ranges::all_of(numbers, [](const ChangeNumber& n) { return n.value == n.usual; })) return j;
+    for (const ChangeNumber& n : numbers)
+        if (n.value != n.usual || n.usual != 0) j[n.name] = n.value;
     return j;
 }
 
@@ -156,16 +156,13 @@ EntryContent content_of(EntryColumns& columns, EntryKind kind, const json& j) {
         case EntryKind::dip:
         case EntryKind::wipe:
         case EntryKind::rinse:
-        case EntryKind::reshape: {
-            const BrushActionKind action = brush_action_of(kind);
-            return BrushAction{.kind = action,
+        case EntryKind::reshape:
+            return BrushAction{.what = change_in(j, kind),
                                .brush = std::move(columns.brush),
                                .ink = std::move(columns.ink),
-                               .extent = extent_in(j, action),
                                .seed = columns.seed,
                                .dip = settings.dip,
                                .spine = settings.spine};
-        }
         case EntryKind::dry:
             return Dry{seconds_in(j), settings.down};
         case EntryKind::wash:
