@@ -47,6 +47,7 @@ stroke/contact
 stroke/deposit
 stroke/session
 stroke/layers
+stroke/painting
 stroke/document
 motion
 io/font io/image io/package render/brush render/gl

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "io/svg/style/svg_css.h"
 #include "io/svg/svg.h"
-#include "stroke/document/apply_area.h"
+#include "stroke/painting/apply_area.h"
 
 /// Coloured drawings as areas. 100 units are 100 mm; areas below are in mm².
 namespace tuft::io {

@@ -11,7 +11,7 @@
 
 #include "io/image/image.h"
 #include "io/svg/svg.h"
-#include "stroke/document/apply_area.h"
+#include "stroke/painting/apply_area.h"
 
 /// Static files of the W3C's test suite for SVG 1.1: those of the Debian package librsvg2-tests, or in the folder
 /// TUFT_SVG_SUITE; skipped where neither is there.

@@ -8,7 +8,7 @@
 #include "io/font/font.h"
 #include "io/font/installed_fonts.h"
 #include "io/svg/svg.h"
-#include "stroke/document/apply_area.h"
+#include "stroke/painting/apply_area.h"
 
 /// Text of drawings. 100 units are 100 mm. Every test holds for whatever font is installed as "sans-serif".
 namespace tuft::io {

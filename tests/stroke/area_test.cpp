@@ -8,9 +8,9 @@
 #include "entry_text.h"
 #include "ink/composite/match.h"
 #include "sheet.h"
-#include "stroke/document/apply_area.h"
 #include "stroke/document/pick.h"
 #include "stroke/drawing/copies.h"
+#include "stroke/painting/apply_area.h"
 
 /// Masked areas of drawings: coverage, gradients, what they cover, copies.
 namespace tuft::stroke {

@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "core/system/parallel.h"
 #include "sheet.h"
-#include "stroke/document/tile_reach.h"
+#include "stroke/painting/tile_reach.h"
 #include "stroke/session/session.h"
 
 /// Strokes painted side by side: whatever the number of threads, the bits are those of one stroke after the other.

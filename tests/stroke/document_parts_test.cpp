@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "sheet.h"
-#include "stroke/document/undo_history.h"
 #include "stroke/drawing/line_width.h"
+#include "stroke/painting/undo_history.h"
 #include "stroke/placement/tip_lag.h"
 
 /// The parts of a document, each on its own.

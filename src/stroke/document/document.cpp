@@ -4,89 +4,43 @@
 #include <utility>
 
 #include "core/overloaded.h"
-#include "stroke/document/path_ahead.h"
-#include "stroke/document/tile_reach.h"
+#include "core/system/parallel.h"
 #include "stroke/journal/tables.h"
+#include "stroke/painting/paint_stroke.h"
+#include "stroke/painting/path_ahead.h"
+#include "stroke/painting/perform_entry.h"
+#include "stroke/painting/stroke_batch.h"
 #include "stroke/session/session.h"
-#include "stroke/surface/flat_texels.h"
-#include "stroke/surface/mask_texels.h"
 
-/// The journal: painting, replaying, taking back. What one entry does is in document_entries.cpp and
-/// document_stroke.cpp.
+/// The journal: painting, replaying, taking back. What one entry does is in stroke/painting.
 namespace tuft::stroke {
 
-Document::Document(const Model& model, const DocumentOptions& options)
-    : model_(model),
-      options_(options),
-      layers_(model.texels.n_slots()),
-      masks_(model),
-      parts_(model),
-      materials_(options.substrate, layers_, options.tip_lags),
-      appearance_(model, materials_, layers_, palette_, parts_),
-      film_(model),
-      history_(options.undo_bytes),
-      scratch_{.flat_texels = nullptr, .plans = std::make_unique<PlanScratchPool>(), .tile_reach = nullptr} {}
+Document::Document(const Model& model, const DocumentOptions& options) : painted_(model, options) {}
 
 Document::~Document() = default;
 
-void Document::use(const brush::Preset& preset) {
-    materials_.use(preset);
-    brushes_.drop(preset.name);
-}
-
-// Before the hand begins: what it may not do. A replay may, since the lock came after it.
 void Document::check_layer(const JournalEntry& entry) const {
-    if (const PartEdit* edit = entry.as<PartEdit>()) {
-        std::vector<std::string> names;
-        for (const Part& part : edit->parts) names.push_back(part.name);
-        check_part_names(*model_.mesh, names);
-    }
-    if (const MaskEdit* edit = entry.as<MaskEdit>(); edit && !edit->remove) check_groups(edit->mask, *model_.mesh);
-    if (!entry.as<PaintStroke>() && !entry.as<Fill>()) return;
-    if (on_palette(entry)) return;
-    const std::uint32_t id = layer_of(entry), mask = mask_of(entry);
-    const Layer* layer = layers_.table().find(id);
-    if (!layer) throw Error(Message("there is no layer {} to paint on", id));
-    if (mask && !masks_.table().find(mask)) throw Error(Message("there is no mask {}", mask));
-    if (layer->locked)
-        throw Error(Message("layer '{}' is locked; unlock it or paint on another one", title_of(*layer)));
+    stroke::check_layer(painted_, entry);
 }
 
-// A brush that is not held is fresh; the entry says so, for replays that hold it.
-void Document::settle(PaintStroke& stroke) const {
-    if (stroke.layer == kPaletteLayer) stroke.settings.film = FilmModel::wet;
-    if (!stroke.erases() && !brushes_.find(stroke.brush)) stroke.settings.dip = DipMode::each;
+void Document::check_size(const JournalEntry& entry) const {
+    stroke::check_size(painted_, entry);
 }
 
-// The same of any entry; new layers and masks get their ids.
-void Document::settle(EntryContent& content) const {
-    std::visit(Overloaded{[&](PaintStroke& stroke) { settle(stroke); },
-                          [&](BrushAction& action) {
-                              const BrushInHand* last = brushes_.find(action.brush);
-                              if (!last) action.dip = DipMode::each;
-                              if (last && action.ink.empty()) action.ink = last->dipped;
-                          },
-                          [](const Dry&) {}, [](const WashPalette&) {}, [](const Fill&) {},
-                          [&](LayerEdit& edit) {
-                              const bool is_new = edit.what == LayerChange::add || edit.what == LayerChange::duplicate;
-                              if (is_new && edit.layer.id == 0) edit.layer.id = layers_.table().next_id;
-                          },
-                          [&](MaskEdit& edit) {
-                              if (!edit.remove && edit.mask.id == 0) edit.mask.id = masks_.table().next_id;
-                          },
-                          [](const PartEdit&) {}},
-               content);
+void Document::use(const brush::Preset& preset) {
+    painted_.materials.use(preset);
+    painted_.brushes.drop(preset.name);
 }
 
 StrokeReport Document::paint(JournalEntry entry, const ProgressFn& progress) {
     check_layer(entry);
-    settle(entry.content);
+    settle(painted_, entry.content);
     entry.id = journal_.next_id();
     StrokeReport report;
     try {
         report = perform(entry, progress);
     } catch (...) {
-        forget_pigments();
+        painted_.forget_pigments();
         throw;
     }
     journal_.append(std::move(entry));
@@ -98,24 +52,26 @@ StrokeReport Document::perform(const JournalEntry& entry, const ProgressFn& prog
     if (!entry.as<PaintStroke>()) cancel();
     const std::uint64_t id = entry.id;
     const auto done = [id] { return StrokeReport{.stroke_id = id}; };
-    return std::visit(Overloaded{[&](const PaintStroke& stroke) {
-                                     return draw(id, stroke, path ? path->take() : path_of(stroke), progress);
-                                 },
-                                 [&](const BrushAction& action) { return act(id, action), done(); },
-                                 [&](const Dry& wait) { return dry(id, wait, progress), done(); },
-                                 [&](const WashPalette&) { return wash(id), done(); },
-                                 [&](const Fill& coat) { return fill(id, coat); },
-                                 [&](const LayerEdit& edit) { return edit_layers(id, edit), done(); },
-                                 [&](const MaskEdit& edit) { return edit_masks(id, edit), done(); },
-                                 [&](const PartEdit& edit) { return edit_parts(id, edit), done(); }},
-                      entry.content);
+    return std::visit(
+        Overloaded{
+            [&](const PaintStroke& stroke) {
+                return draw(id, stroke, path ? path->take() : path_of(painted_, stroke), progress);
+            },
+            [&](const BrushAction& action) { return perform_action(painted_, id, action), done(); },
+            [&](const Dry& wait) { return perform_drying(painted_, id, wait, entries_before(id), progress), done(); },
+            [&](const WashPalette&) { return perform_wash(painted_, id), done(); },
+            [&](const Fill& coat) { return perform_fill(painted_, id, coat); },
+            [&](const LayerEdit& edit) { return edit_layers(painted_, id, edit), done(); },
+            [&](const MaskEdit& edit) { return edit_masks(painted_, id, edit), done(); },
+            [&](const PartEdit& edit) { return edit_parts(painted_, id, edit), done(); }},
+        entry.content);
 }
 
 void Document::paint(std::vector<JournalEntry> entries, const EntryDoneFn& done, const ProgressFn& progress) {
     const EntrySteps steps{.prepare =
                                [this](JournalEntry& entry, std::size_t ahead) {
                                    check_layer(entry);
-                                   settle(entry.content);
+                                   settle(painted_, entry.content);
                                    entry.id = journal_.next_id() + ahead;
                                },
                            .append =
@@ -126,7 +82,7 @@ void Document::paint(std::vector<JournalEntry> entries, const EntryDoneFn& done,
     try {
         perform_all(entries, steps, progress);
     } catch (...) {
-        forget_pigments();
+        painted_.forget_pigments();
         throw;
     }
 }
@@ -146,7 +102,7 @@ std::vector<StrokeReport> Document::replay(std::vector<JournalEntry> entries, co
 
 void Document::adopt(std::vector<JournalEntry> entries, std::vector<LayerCanvas> canvases, std::uint64_t last) {
     for (const LayerCanvas& layer : canvases) {
-        const Model& model = layer.layer == kPaletteLayer ? palette_.model() : model_;
+        const Model& model = layer.layer == kPaletteLayer ? painted_.palette.model() : painted_.model;
         if (layer.canvas.n_slots() != model.texels.n_slots()) throw Error("the stored texels belong to another atlas");
     }
     if (!fits(entries, last)) throw Error("the stored texels belong to other strokes");
@@ -155,21 +111,21 @@ void Document::adopt(std::vector<JournalEntry> entries, std::vector<LayerCanvas>
     LayerTable table = layers_after({entries.begin(), rest});
     MaskTable masks = masks_after({entries.begin(), rest});
     PartTable parts = parts_after({entries.begin(), rest});
-    palette_.clear();
+    painted_.palette.clear();
     const auto of_palette = std::ranges::find(canvases, kPaletteLayer, &LayerCanvas::layer);
     if (of_palette != canvases.end()) {
-        palette_.plate().canvas = std::move(of_palette->canvas);
+        painted_.palette.plate().canvas = std::move(of_palette->canvas);
         canvases.erase(of_palette);
     }
-    layers_.replace(std::move(table), std::move(canvases));
-    masks_.set_table(std::move(masks));
-    set_parts(std::move(parts));
-    brushes_.clear();
-    history_.clear(layers_.pigments().size());
+    painted_.layers.replace(std::move(table), std::move(canvases));
+    painted_.masks.set_table(std::move(masks));
+    painted_.set_parts(std::move(parts));
+    painted_.brushes.clear();
+    painted_.history.clear(painted_.layers.pigments().size());
     std::vector<JournalEntry> after(std::make_move_iterator(rest), std::make_move_iterator(entries.end()));
     for (auto entry = entries.begin(); entry != rest; ++entry) journal_.restore(std::move(*entry));
     replay(std::move(after));
-    appearance_.apply_recolours();
+    painted_.appearance.apply_recolours();
 }
 
 namespace {
@@ -189,12 +145,12 @@ bool Document::undo() {
     journal_.undo();
     const JournalEntry& entry = journal_.undone().back();
     if (entry.hidden) return true;
-    if (std::optional<UndoRecord> record = history_.take(entry.id)) {
-        take_back(std::move(*record));
+    if (std::optional<UndoRecord> record = painted_.history.take(entry.id)) {
+        painted_.take_back(std::move(*record));
     } else if (changes_tables_only(entry)) {
-        layers_.set_table(layers_after(journal_.entries()));
-        masks_.set_table(masks_after(journal_.entries()));
-        set_parts(parts_after(journal_.entries()));
+        painted_.layers.set_table(layers_after(journal_.entries()));
+        painted_.masks.set_table(masks_after(journal_.entries()));
+        painted_.set_parts(parts_after(journal_.entries()));
     } else {
         repaint_all();
     }
@@ -208,46 +164,110 @@ bool Document::redo() {
     return true;
 }
 
+std::span<const JournalEntry> Document::entries_before(std::uint64_t id) const {
+    const std::vector<JournalEntry>& all = journal_.entries();
+    return {all.begin(), std::ranges::find(all, id, &JournalEntry::id)};
+}
+
 void Document::repaint_all() {
-    layers_.clear();
-    palette_.clear();
-    masks_.set_table({});
-    set_parts({});
-    brushes_.clear();
-    history_.clear(0);
-    forget_pigments();
+    painted_.clear();
     std::vector<JournalEntry> entries = journal_.entries();
     perform_all(entries, {.prepare = {}, .append = [](JournalEntry&, StrokeReport) {}}, {});
 }
 
-// The entry is done: this is what it changed.
-void Document::record(UndoRecord record) {
-    history_.add(std::move(record), layers_.pigments().size());
+void Document::begin(JournalEntry entry) {
+    check_layer(entry);
+    cancel();
+    in_work_.session = make_session(painted_, std::get<PaintStroke>(entry.content));
+    if (thread_count() > 1) in_work_.session->forecast_hand();
+    in_work_.entry = std::move(entry);
 }
 
-void Document::take_back(UndoRecord record) {
-    restore(record.tiles);
-    if (record.masks) masks_.set_table(std::move(*record.masks));
-    if (record.parts) set_parts(std::move(*record.parts));
-    if (record.layers) {
-        const bool brings_canvas = record.layers->canvas.has_value();
-        layers_.restore(std::move(*record.layers));
-        if (brings_canvas) appearance_.apply_recolours();
+void Document::extend(std::span<const brush::Pose> poses, const std::function<void()>& painted) {
+    in_work_.session->extend(poses, painted);
+}
+
+StrokeReport Document::end() {
+    in_work_.entry.content = in_work_.session->stroke();
+    StrokeReport report = finish_session(journal_.next_id());
+    journal_.append(std::move(in_work_.entry));
+    return report;
+}
+
+void Document::cancel() {
+    if (!in_work_.session) return;
+    std::vector<LayerTiles> before;
+    before.push_back({in_work_.session->stroke().layer, in_work_.session->take_snapshots()});
+    painted_.restore(before);
+    in_work_.session.reset();
+    painted_.forget_pigments();
+}
+
+// Ends the stroke in work without a word to the journal.
+StrokeReport Document::finish_session(std::uint64_t id) {
+    StrokeReport report = put_down(painted_, id, in_work_.session->stroke(), in_work_.session->finish(),
+                                   painted_.layers.pigments().size());
+    in_work_.session.reset();
+    return report;
+}
+
+StrokeReport Document::draw(std::uint64_t id, const PaintStroke& stroke, const HandPath& path,
+                            const ProgressFn& progress) {
+    cancel();
+    in_work_.session = make_session(painted_, stroke);
+    try {
+        begin_path(*in_work_.session, path, progress);
+        if (thread_count() > 1 && !watcher_) {
+            if (std::unique_ptr<StrokeForecast> forecast = in_work_.session->forecast(path.poses)) {
+                forecast->compute_ahead();
+                in_work_.session->use(std::move(forecast));
+            }
+        }
+        const std::size_t n = path.poses.size();
+        if (!watcher_) paint_poses(*in_work_.session, path.poses, 0, n);
+        for (std::size_t i = 0; watcher_ && i < n; ++i) {
+            paint_poses(*in_work_.session, path.poses, i, i + 1);
+            watcher_(*in_work_.session, static_cast<double>(i + 1) / static_cast<double>(n));
+        }
+        StrokeReport report = finish_session(id);
+        note_origin(report, stroke, painted_.target(stroke.layer, 0).surface);
+        return report;
+    } catch (...) {
+        cancel();
+        throw;
     }
-    if (record.brush) brushes_.restore(std::move(*record.brush));
-    forget_pigments();
 }
 
-void Document::restore(const std::vector<LayerTiles>& tiles) {
-    for (const LayerTiles& of_layer : tiles)
-        for (const ink::TileSnapshot& tile : of_layer.tiles) canvas(of_layer.layer).restore(tile);
-}
-
-// Pigments of what is taken back are as if they had never been met: a replay meets the others in its own order.
-void Document::forget_pigments() {
-    if (history_.n_pigments() >= layers_.pigments().size()) return;
-    layers_.forget_pigments(history_.n_pigments());
-    palette_.forget_pigments(history_.n_pigments());
+void Document::perform_all(std::vector<JournalEntry>& entries, const EntrySteps& steps, const ProgressFn& progress) {
+    cancel();
+    const double all = std::max<double>(1.0, static_cast<double>(entries.size()));
+    std::size_t i = 0;
+    // Reports the next `n` entries.
+    const auto part_of = [&](std::size_t n) -> ProgressFn {
+        return [&progress, all, n, first = i](std::string_view phase, double part) {
+            return !progress || progress(phase, (static_cast<double>(first) + part * static_cast<double>(n)) / all);
+        };
+    };
+    std::unique_ptr<PathAhead> path;  // of entry i, or null
+    while (i < entries.size()) {
+        StrokeBatch batch(painted_);
+        if (!watcher_) batch.take_in(std::span(entries).subspan(i), steps.prepare);
+        if (batch.size() > 1) {
+            batch.paint(part_of(batch.size()));
+            const std::size_t appended = batch.append(steps.append);
+            i += appended;
+            if (appended > 0) path.reset();
+            if (appended == batch.size()) continue;
+        }
+        JournalEntry& entry = entries[i];
+        if (steps.prepare) steps.prepare(entry, 0);
+        const std::unique_ptr<PathAhead> own = std::exchange(path, nullptr);
+        if (thread_count() > 1 && i + 1 < entries.size() && !paints_beside_others(entries[i + 1]))
+            path = plan_path_ahead(painted_, entries[i + 1]);
+        StrokeReport report = entry.hidden ? StrokeReport{} : perform(entry, part_of(1), own.get());
+        steps.append(entry, std::move(report));
+        ++i;
+    }
 }
 
 std::vector<LayerTexels> all_canvases(const Document& document) {

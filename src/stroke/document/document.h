@@ -1,49 +1,24 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "stroke/document/brushes_in_hand.h"
-#include "stroke/document/paint_target.h"
-#include "stroke/document/undo_history.h"
 #include "stroke/journal/journal.h"
-#include "stroke/layers/appearance.h"
-#include "stroke/layers/layer_stack.h"
-#include "stroke/layers/mask_set.h"
-#include "stroke/layers/materials.h"
-#include "stroke/layers/model_film.h"
-#include "stroke/layers/palette.h"
-#include "stroke/layers/part_set.h"
+#include "stroke/painting/painted_model.h"
 #include "stroke/session/report.h"
-#include "stroke/surface/model.h"
 
 /// \file
 /// A decorated model: its journal, and the texels made from it. The studio, `tuft` and the tests paint through
 /// `Document`; there is no second path. `samples/hello` is the smallest program that does.
 namespace tuft::stroke {
 
-/// Options of `Document`.
-struct DocumentOptions {
-    std::string substrate = "porcelain";              ///< name of a shipped one; `Document::use` takes any other
-    std::size_t undo_bytes = std::size_t{256} << 20;  ///< of retained tiles; older entries are undone by replay
-    bool record_forces = false;                       ///< fills `StrokeReport::forces`
-    DiskCache tip_lags = shared_tip_lag_cache();      ///< of measured tip lags
-};
-
-class FlatTexels;
-struct FillResult;
 struct HandPath;
 class PathAhead;
-class PlanScratchPool;
-struct SessionInput;
-struct SessionResult;
 class StrokeSession;
-class TileReach;
-struct TileUse;
-struct WetFilmInUse;
 
 /// Called with an entry that has been performed and appended to the journal, in the journal's order, by the thread that
 /// waits for the document.
@@ -62,33 +37,33 @@ class Document {
     Document(const Document&) = delete;
     Document& operator=(const Document&) = delete;
 
-    const Model& model() const { return model_; }
+    const Model& model() const { return painted_.model; }
     const Journal& journal() const { return journal_; }
-    const LayerStack& layers() const { return layers_; }
+    const LayerStack& layers() const { return painted_.layers; }
     /// A stroke or fill that names a mask leaves the texels outside it as they are. What it leaves wet does not flow
     /// over the mask's edge: the mask stays on the layer until something is painted there with another mask or none.
-    const MaskSet& masks() const { return masks_; }
+    const MaskSet& masks() const { return painted_.masks; }
     /// Hidden parts are as if they were not there: strokes go through to what lies behind them, and drawings are placed
     /// on what is seen. Locked parts are touched and get no ink. An eraser takes none from either.
-    const PartSet& parts() const { return parts_; }
+    const PartSet& parts() const { return painted_.parts; }
     /// Strokes and fills with the layer `kPaletteLayer` go onto it, with wet ink; `WashPalette` cleans it. It is no
     /// part of `layers`.
-    const Palette& palette() const { return palette_; }
-    const Materials& materials() const { return materials_; }
+    const Palette& palette() const { return painted_.palette; }
+    const Materials& materials() const { return painted_.materials; }
     /// Brushes as the last entry with them left them. None is held after `adopt`.
-    const BrushesInHand& brushes() const { return brushes_; }
-    Appearance& appearance() { return appearance_; }
-    const Appearance& appearance() const { return appearance_; }
+    const BrushesInHand& brushes() const { return painted_.brushes; }
+    Appearance& appearance() { return painted_.appearance; }
+    const Appearance& appearance() const { return painted_.appearance; }
 
     /// Takes a preset in the place of others of its name, for entries from now on (a project brings its own). A brush
     /// of that name is no longer held.
     void use(const brush::Preset& preset);
-    void use(const ink::Ink& ink) { materials_.use(ink); }
-    void use(const ink::Substrate& substrate) { materials_.use(substrate); }
+    void use(const ink::Ink& ink) { painted_.materials.use(ink); }
+    void use(const ink::Substrate& substrate) { painted_.materials.use(substrate); }
     /// `Materials::mix_together`.
-    void mix_together(const std::map<std::string, double>& weights) { materials_.mix_together(weights); }
+    void mix_together(const std::map<std::string, double>& weights) { painted_.materials.mix_together(weights); }
     /// `Materials::forget_inks`. No entry of the journal may name one of them.
-    void forget_inks(const std::vector<std::string>& names) { materials_.forget_inks(names); }
+    void forget_inks(const std::vector<std::string>& names) { painted_.materials.forget_inks(names); }
 
     /// Performs the entry and appends it to the journal. Throws `Error`, before anything is changed, for an unknown
     /// brush, ink, layer or mask, a locked layer, a stroke without samples. Throws `Cancelled` when `progress` stops
@@ -107,7 +82,7 @@ class Document {
 
     /// Throws the `Error` of `paint` for a stroke of the model that is too large: its brush is too wide for the texels,
     /// or its path is at least twice the longest that is painted. Paints nothing and maps nothing to the surface.
-    void check_size(const JournalEntry& entry);
+    void check_size(const JournalEntry& entry) const;
     /// Throws the `Error` of `paint` for an entry whose layer, mask or part is missing, or whose layer is locked.
     void check_layer(const JournalEntry& entry) const;
 
@@ -139,88 +114,25 @@ class Document {
     void restore_undone(std::vector<JournalEntry> undone) { journal_.restore_undone(std::move(undone)); }
 
   private:
-    void settle(PaintStroke& stroke) const;
-    void settle(EntryContent& content) const;
-
-    StrokeReport perform(const JournalEntry& entry, const ProgressFn& progress, PathAhead* path = nullptr);
-    StrokeReport draw(std::uint64_t id, const PaintStroke& stroke, const HandPath& path, const ProgressFn& progress);
-    void act(std::uint64_t id, const BrushAction& action);
-    void dry(std::uint64_t id, const Dry& wait, const ProgressFn& progress);
-    void wash(std::uint64_t id);
-    StrokeReport fill(std::uint64_t id, const Fill& fill);
-    FillResult fill_area(const Fill& fill);
-    void edit_layers(std::uint64_t id, const LayerEdit& edit);
-    void edit_masks(std::uint64_t id, const MaskEdit& edit);
-    void edit_parts(std::uint64_t id, const PartEdit& edit);
-    void set_parts(PartTable table);
-
     /// How entries that are performed in turn enter the journal.
     struct EntrySteps {
         std::function<void(JournalEntry& entry, std::size_t ahead)> prepare;  // `ahead`: entries not yet appended
         std::function<void(JournalEntry& entry, StrokeReport report)> append;
     };
-    struct BatchStroke;
+    StrokeReport perform(const JournalEntry& entry, const ProgressFn& progress, PathAhead* path = nullptr);
     void perform_all(std::vector<JournalEntry>& entries, const EntrySteps& steps, const ProgressFn& progress);
-    bool paints_beside_others(const JournalEntry& entry) const;
-    std::vector<BatchStroke> plan_batch(std::span<JournalEntry> entries, const EntrySteps& steps);
-    bool plan_stroke(BatchStroke& stroke);
-    void plan_path(BatchStroke& planned) const;
-    void start_session(BatchStroke& planned) const;
-    void paint_step(BatchStroke& stroke, std::size_t step, const ProgressFn& progress) const;
-    void paint_batch(std::vector<BatchStroke>& batch, const ProgressFn& progress);
-    std::size_t append_batch(std::vector<BatchStroke>& batch, const EntrySteps& steps);
-    void take_back(std::span<BatchStroke> batch);
-
-    HandPath path_of(const PaintStroke& stroke);
-    std::unique_ptr<PathAhead> plan_path_ahead(const JournalEntry& entry);
-    std::unique_ptr<StrokeSession> make_session(PaintStroke stroke);
-    SessionInput session_input(PaintStroke stroke, const std::vector<TileUse>* plan);
+    StrokeReport draw(std::uint64_t id, const PaintStroke& stroke, const HandPath& path, const ProgressFn& progress);
     StrokeReport finish_session(std::uint64_t id);
-    StrokeReport put_down(std::uint64_t id, const PaintStroke& stroke, SessionResult result, std::size_t n_pigments);
-    BrushStart brush_start(const PaintStroke& stroke);
-    BrushInHand take_up(const PaintStroke& stroke, const BrushStart& start) const;
-    WetFilmInUse wet_film_for(const PaintStroke& stroke, const PaintTarget& target);
-
-    const mesh::SurfaceQuery& surface() const { return *parts_.surface(); }
-    ink::WetFilm& film_within(std::uint32_t mask);
-    ink::Canvas& canvas(std::uint32_t layer);
-    PaintTarget target(std::uint32_t layer, std::uint32_t mask);
-    ink::Mix mix_of(const std::string& ink);
-    brush::Preset preset_of(const std::string& brush, brush::SpineMethod spine) const;
-    HolderOptions holder_of(const PaintStroke& stroke);
-    std::uint32_t stencil_mask_on(std::uint32_t layer, std::uint64_t before) const;
-
-    void record(UndoRecord record);
-    void take_back(UndoRecord record);
-    void restore(const std::vector<LayerTiles>& tiles);
-    void forget_pigments();
+    std::span<const JournalEntry> entries_before(std::uint64_t id) const;
     void repaint_all();
 
-    /// What is computed once and used by many entries.
-    struct Scratch {
-        std::unique_ptr<FlatTexels> flat_texels;  ///< of the last area
-        std::unique_ptr<PlanScratchPool> plans;
-        std::unique_ptr<TileReach> tile_reach;  ///< of the model, made for the first batch of strokes
-        std::shared_ptr<Drapes> drapes;         ///< of the visible surface
-    };
     struct StrokeInWork {
         std::unique_ptr<StrokeSession> session;
         JournalEntry entry;  ///< its header, from `begin` to `end`
     };
 
-    const Model& model_;
-    DocumentOptions options_;
     Journal journal_;
-    LayerStack layers_;
-    MaskSet masks_;
-    PartSet parts_;
-    Palette palette_;
-    Materials materials_;
-    BrushesInHand brushes_;
-    Appearance appearance_;
-    ModelFilm film_;
-    UndoHistory history_;
-    Scratch scratch_;
+    PaintedModel painted_;
     StrokeInWork in_work_;
     PoseFn watcher_;
 };

@@ -1,4 +1,4 @@
-#include "stroke/document/undo_history.h"
+#include "stroke/painting/undo_history.h"
 
 #include <utility>
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "ink/exchange/deposit.h"
-#include "stroke/document/paint_target.h"
 #include "stroke/journal/entry/fill.h"
+#include "stroke/painting/paint_target.h"
 
 /// \file
 /// Fills and gradients on texels. Called by `Document` for entries with a `Fill`.

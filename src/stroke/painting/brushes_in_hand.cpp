@@ -1,4 +1,4 @@
-#include "stroke/document/brushes_in_hand.h"
+#include "stroke/painting/brushes_in_hand.h"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "stroke/document/apply_area.h"
+#include "stroke/painting/apply_area.h"
 
 #include <algorithm>
 #include <cmath>

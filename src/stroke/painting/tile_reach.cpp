@@ -1,4 +1,4 @@
-#include "stroke/document/tile_reach.h"
+#include "stroke/painting/tile_reach.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,3 +1,5 @@
+#include "stroke/painting/stroke_batch.h"
+
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -6,23 +8,17 @@
 #include <optional>
 #include <utility>
 
-#include "brush/preset/preset.h"
 #include "core/system/interrupt.h"
 #include "core/system/parallel.h"
-#include "stroke/document/document.h"
-#include "stroke/document/paint_path.h"
-#include "stroke/document/path_ahead.h"
-#include "stroke/document/tile_reach.h"
-#include "stroke/session/session.h"
+#include "stroke/gesture/hand.h"
+#include "stroke/painting/paint_stroke.h"
+#include "stroke/painting/perform_entry.h"
+#include "stroke/painting/tile_reach.h"
 
-/// Many entries in turn. A stroke that begins with a fresh brush depends on the model and on the ink in the tiles it
-/// uses, and changes nothing else. So the strokes of a batch are painted side by side, part by part of their paths: a
-/// part waits until every earlier stroke is done with the tiles that it may use. A stroke that leaves the tiles planned
-/// for it is taken back with those after it, and painted by itself.
 namespace tuft::stroke {
 
 /// A stroke of a batch.
-struct Document::BatchStroke {
+struct StrokeBatch::Stroke {
     JournalEntry* entry = nullptr;
     std::size_t n_pigments = 0;     // that the document has met with it
     ink::Canvas* canvas = nullptr;  // of its layer
@@ -118,8 +114,7 @@ class BatchProgress {
 
 }  // namespace
 
-// A brush that persists, wet ink and paste depend on more than tiles. Layer and presets are checked when it is planned.
-bool Document::paints_beside_others(const JournalEntry& entry) const {
+bool paints_beside_others(const JournalEntry& entry) {
     if (entry.hidden) return true;
     const PaintStroke* stroke = entry.as<PaintStroke>();
     if (!stroke || stroke->layer == kPaletteLayer || stroke->trace.samples.empty()) return false;
@@ -127,74 +122,79 @@ bool Document::paints_beside_others(const JournalEntry& entry) const {
     return stroke->settings.dip == DipMode::each && stroke->settings.film != FilmModel::wet;
 }
 
-// Returns false where the stroke must be painted by itself; where it cannot be painted at all, it throws then.
-bool Document::plan_stroke(BatchStroke& planned) {
-    const PaintStroke& stroke = planned.stroke();
-    const brush::Preset& preset = materials_.brush(stroke.brush);
-    if (!stroke.erases() && materials_.ink(stroke.ink).yield > 0) return false;
-    planned.holder = holder_of(stroke);
-    planned.preset = &preset;
-    planned.spacing = pose_spacing(stroke, preset, stroke.erases() ? ink::Ink{} : materials_.ink(stroke.ink),
-                                   model_.texels.texel_size);
-    PaintStroke settled = stroke;
-    settle(settled);
-    planned.start = brush_start(settled);
-    planned.input.emplace(session_input(std::move(settled), &planned.tiles));
-    if (!stroke.erases()) planned.input->ink = materials_.ink(stroke.ink);  // a fresh brush
-    planned.canvas = &layers_.canvas(stroke.layer);
-    planned.n_pigments = layers_.pigments().size();
-    return true;
-}
+StrokeBatch::StrokeBatch(PaintedModel& painted) : painted_(painted) {}
 
-// Strokes from the first of these entries on that can be painted side by side; none where there is one thread, or where
-// each is watched.
-std::vector<Document::BatchStroke> Document::plan_batch(std::span<JournalEntry> entries, const EntrySteps& steps) {
+StrokeBatch::~StrokeBatch() = default;
+
+void StrokeBatch::take_in(std::span<JournalEntry> entries, const PrepareFn& prepare) {
     const auto threads = static_cast<std::size_t>(thread_count());
-    std::vector<BatchStroke> batch;
-    if (threads == 1 || watcher_) return batch;
+    if (threads == 1) return;
     const std::size_t most = std::min(entries.size(), kStrokesPerThread * threads);
-    batch.reserve(most);  // what sessions begin with refers to the tiles of their strokes
+    strokes_.reserve(most);  // what sessions begin with refers to the tiles of their strokes
     std::size_t samples = 0;
     for (std::size_t i = 0; i < most && paints_beside_others(entries[i]); ++i) {
         JournalEntry& entry = entries[i];
         if (!entry.hidden) samples += entry.get<PaintStroke>().trace.samples.size();
         if (i > 0 && samples > kSamplesPerThread * threads) break;
-        BatchStroke& planned = batch.emplace_back();
+        Stroke& planned = strokes_.emplace_back();
         planned.entry = &entry;
         bool beside = true;
         try {
-            if (steps.prepare) steps.prepare(entry, i);
-            beside = entry.hidden || plan_stroke(planned);
+            if (prepare) prepare(entry, i);
+            beside = entry.hidden || plan(planned);
         } catch (const Error&) {
             beside = false;
         }
         if (beside) continue;
-        batch.pop_back();
+        strokes_.pop_back();
         break;
     }
-    return batch;
+}
+
+std::size_t StrokeBatch::size() const {
+    return strokes_.size();
+}
+
+// Returns false where the stroke must be painted by itself; where it cannot be painted at all, it throws then.
+bool StrokeBatch::plan(Stroke& planned) {
+    const PaintStroke& stroke = planned.stroke();
+    const brush::Preset& preset = painted_.materials.brush(stroke.brush);
+    if (!stroke.erases() && painted_.materials.ink(stroke.ink).yield > 0) return false;
+    planned.holder = holder_of(painted_, stroke);
+    planned.preset = &preset;
+    planned.spacing = pose_spacing(stroke, preset, stroke.erases() ? ink::Ink{} : painted_.materials.ink(stroke.ink),
+                                   painted_.model.texels.texel_size);
+    PaintStroke settled = stroke;
+    settle(painted_, settled);
+    planned.start = brush_start(painted_, settled);
+    planned.input.emplace(session_input(painted_, std::move(settled), &planned.tiles));
+    if (!stroke.erases()) planned.input->ink = painted_.materials.ink(stroke.ink);  // a fresh brush
+    planned.canvas = &painted_.layers.canvas(stroke.layer);
+    planned.n_pigments = painted_.layers.pigments().size();
+    return true;
 }
 
 // The path of a stroke, and the tiles that it may use.
-void Document::plan_path(BatchStroke& planned) const {
+void StrokeBatch::plan_path(Stroke& planned) const {
     const PaintStroke& stroke = planned.stroke();
-    const double texel = model_.texels.texel_size;
-    planned.path = stroke.trace.flat ? hand_path(surface(), steady(stroke.trace, stroke.settings), planned.holder)
-                                     : HandPath{{}, spatial_poses(stroke.trace), 0};
+    const double texel = painted_.model.texels.texel_size;
+    planned.path = stroke.trace.flat
+                       ? hand_path(painted_.surface(), steady(stroke.trace, stroke.settings), planned.holder)
+                       : HandPath{{}, spatial_poses(stroke.trace), 0};
     const std::vector<brush::Pose>& poses = planned.path.poses;
     planned.parts =
         parts_of_path(poses, std::max(kLeastPart * planned.spacing, 0.5 * brush::tuft_width(*planned.preset)));
-    planned.tiles =
-        scratch_.tile_reach->tiles_at(reached_places(surface(), poses, planned.parts, *planned.preset, texel));
+    planned.tiles = painted_.scratch.tile_reach->tiles_at(
+        reached_places(painted_.surface(), poses, planned.parts, *planned.preset, texel));
 }
 
-void Document::start_session(BatchStroke& planned) const {
-    planned.input->brush = take_up(planned.input->stroke, planned.start);
+void StrokeBatch::start_session(Stroke& planned) const {
+    planned.input->brush = take_up(painted_, planned.input->stroke, planned.start);
     planned.session = std::make_unique<StrokeSession>(std::move(*planned.input));
     planned.input.reset();
 }
 
-void Document::paint_step(BatchStroke& stroke, std::size_t step, const ProgressFn& progress) const {
+void StrokeBatch::paint_step(Stroke& stroke, std::size_t step, const ProgressFn& progress) const {
     StrokeSession& session = *stroke.session;
     const std::span<const brush::Pose> poses = stroke.path.poses;
     if (step == 0) {
@@ -210,101 +210,71 @@ void Document::paint_step(BatchStroke& stroke, std::size_t step, const ProgressF
     if (part < stroke.parts.size())
         return paint_poses(session, poses, part ? stroke.parts[part - 1] : 0, stroke.parts[part]);
     stroke.result = session.finish();
-    note_origin(stroke.result->report, stroke.stroke(), surface());
+    note_origin(stroke.result->report, stroke.stroke(), painted_.surface());
 }
 
-void Document::paint_batch(std::vector<BatchStroke>& batch, const ProgressFn& progress) {
-    if (!scratch_.tile_reach) scratch_.tile_reach = std::make_unique<TileReach>(model_.texels, model_.clusters);
-    std::atomic<std::size_t> first_fault{batch.size()};
+void StrokeBatch::paint(const ProgressFn& progress) {
+    if (!painted_.scratch.tile_reach)
+        painted_.scratch.tile_reach = std::make_unique<TileReach>(painted_.model.texels, painted_.model.clusters);
+    std::atomic<std::size_t> first_fault{strokes_.size()};
     const auto guarded = [&](std::size_t i, const auto& work) {
-        if (batch[i].hidden() || i >= first_fault) return;
+        if (strokes_[i].hidden() || i >= first_fault) return;
         try {
-            work(batch[i]);
+            work(strokes_[i]);
         } catch (...) {
-            batch[i].fault = std::current_exception();
+            strokes_[i].fault = std::current_exception();
             std::size_t first = first_fault;
             while (i < first && !first_fault.compare_exchange_weak(first, i)) {
             }
         }
     };
-    BatchProgress shown(batch.size(), progress);
+    BatchProgress shown(strokes_.size(), progress);
     const auto shown_of = [&shown](std::size_t i) -> ProgressFn {
         return [&shown, i](std::string_view phase, double part) { return shown.set(i, phase, part); };
     };
-    run_tasks(std::vector<std::vector<std::uint32_t>>(batch.size()), [&](std::size_t i) {
-        guarded(i, [&](BatchStroke& stroke) {
+    run_tasks(std::vector<std::vector<std::uint32_t>>(strokes_.size()), [&](std::size_t i) {
+        guarded(i, [&](Stroke& stroke) {
             report(shown_of(i), "painting", 0);
             start_session(stroke);
             plan_path(stroke);
         });
     });
-    const BatchOrder order = order_by_tiles(std::span(batch).first(first_fault), model_.texels.n_slots());
+    const BatchOrder order = order_by_tiles(std::span(strokes_).first(first_fault), painted_.model.texels.n_slots());
     run_tasks(order.before, [&](std::size_t k) {
         const auto [i, step] = order.steps[k];
-        guarded(i, [&, i = i, step = step](BatchStroke& stroke) { paint_step(stroke, step, shown_of(i)); });
+        guarded(i, [&, i = i, step = step](Stroke& stroke) { paint_step(stroke, step, shown_of(i)); });
     });
 }
 
 // Strokes that are painted, some in part, but whose turn does not come.
-void Document::take_back(std::span<BatchStroke> batch) {
-    for (auto stroke = batch.rbegin(); stroke != batch.rend(); ++stroke) {
+void StrokeBatch::take_back() {
+    for (auto stroke = strokes_.rbegin(); stroke != strokes_.rend(); ++stroke) {
         if (!stroke->session) continue;
         const auto before = stroke->result ? std::move(stroke->result->before) : stroke->session->take_snapshots();
         for (const ink::TileSnapshot& tile : before) stroke->canvas->restore(tile);
     }
-    forget_pigments();
+    painted_.forget_pigments();
 }
 
-// Appends strokes up to the first one that must be painted by itself. Returns their number.
-std::size_t Document::append_batch(std::vector<BatchStroke>& batch, const EntrySteps& steps) {
+std::size_t StrokeBatch::append(const AppendFn& append) {
     std::size_t i = 0;
     try {
-        for (; i < batch.size() && !batch[i].fault; ++i) {
-            JournalEntry& entry = *batch[i].entry;
+        for (; i < strokes_.size() && !strokes_[i].fault; ++i) {
+            JournalEntry& entry = *strokes_[i].entry;
             StrokeReport report;
             if (!entry.hidden)
-                report = put_down(entry.id, batch[i].stroke(), std::move(*batch[i].result), batch[i].n_pigments);
-            steps.append(entry, std::move(report));
+                report = put_down(painted_, entry.id, strokes_[i].stroke(), std::move(*strokes_[i].result),
+                                  strokes_[i].n_pigments);
+            append(entry, std::move(report));
         }
-        if (i < batch.size()) std::rethrow_exception(batch[i].fault);
+        if (i < strokes_.size()) std::rethrow_exception(strokes_[i].fault);
     } catch (const OutsideTiles&) {
-        take_back(batch);
+        take_back();
     } catch (...) {
-        take_back(batch);
+        take_back();
         throw;
     }
     return i;
-}
-
-void Document::perform_all(std::vector<JournalEntry>& entries, const EntrySteps& steps, const ProgressFn& progress) {
-    cancel();
-    const double all = std::max<double>(1.0, static_cast<double>(entries.size()));
-    std::size_t i = 0;
-    // Reports the next `n` entries.
-    const auto part_of = [&](std::size_t n) -> ProgressFn {
-        return [&progress, all, n, first = i](std::string_view phase, double part) {
-            return !progress || progress(phase, (static_cast<double>(first) + part * static_cast<double>(n)) / all);
-        };
-    };
-    std::unique_ptr<PathAhead> path;  // of entry i, or null
-    while (i < entries.size()) {
-        std::vector<BatchStroke> batch = plan_batch(std::span(entries).subspan(i), steps);
-        if (batch.size() > 1) {
-            paint_batch(batch, part_of(batch.size()));
-            const std::size_t appended = append_batch(batch, steps);
-            i += appended;
-            if (appended > 0) path.reset();
-            if (appended == batch.size()) continue;
-        }
-        JournalEntry& entry = entries[i];
-        if (steps.prepare) steps.prepare(entry, 0);
-        const std::unique_ptr<PathAhead> own = std::exchange(path, nullptr);
-        if (thread_count() > 1 && i + 1 < entries.size() && !paints_beside_others(entries[i + 1]))
-            path = plan_path_ahead(entries[i + 1]);
-        StrokeReport report = entry.hidden ? StrokeReport{} : perform(entry, part_of(1), own.get());
-        steps.append(entry, std::move(report));
-        ++i;
-    }
 }
 
 }  // namespace tuft::stroke

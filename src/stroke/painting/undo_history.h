@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "stroke/document/brushes_in_hand.h"
 #include "stroke/journal/entry/mask.h"
 #include "stroke/journal/entry/parts.h"
 #include "stroke/layers/layer_stack.h"
+#include "stroke/painting/brushes_in_hand.h"
 
 /// \file
 /// What the last entries of a journal changed, as it was before, so that `Document::undo` need not paint anew.

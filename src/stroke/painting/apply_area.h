@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "ink/exchange/deposit.h"
-#include "stroke/document/apply_fill.h"
+#include "stroke/painting/apply_fill.h"
 #include "stroke/surface/flat_texels.h"
 
 /// \file

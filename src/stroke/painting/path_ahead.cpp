@@ -1,4 +1,4 @@
-#include "stroke/document/path_ahead.h"
+#include "stroke/painting/path_ahead.h"
 
 #include <utility>
 

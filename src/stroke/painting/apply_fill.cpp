@@ -1,4 +1,4 @@
-#include "stroke/document/apply_fill.h"
+#include "stroke/painting/apply_fill.h"
 
 #include <algorithm>
 #include <array>
