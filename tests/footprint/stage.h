@@ -6,6 +6,7 @@
 
 #include "../atlas/analytic_surfaces.h"
 #include "atlas/texels/log_map.h"
+#include "footprint/stamp/plan_scratch.h"
 #include "footprint/stamp/stamp.h"
 
 /// A surface with its maps, and what stamps do on it.

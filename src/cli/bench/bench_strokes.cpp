@@ -9,6 +9,7 @@
 #include "core/system/clock.h"
 #include "core/system/cpu_time.h"
 #include "core/text/units.h"
+#include "footprint/stamp/plan_scratch.h"
 #include "ink/exchange/deposit.h"
 
 namespace tuft::cli {

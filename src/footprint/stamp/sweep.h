@@ -1,5 +1,6 @@
 #pragma once
 
+#include "footprint/stamp/plan_scratch.h"
 #include "footprint/stamp/stamp.h"
 
 /// \file

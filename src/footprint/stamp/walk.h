@@ -1,6 +1,7 @@
 #pragma once
 
 #include "atlas/texels/cluster_graph.h"
+#include "footprint/stamp/plan_scratch.h"
 #include "footprint/stamp/stamp.h"
 
 /// \file

@@ -4,7 +4,7 @@
 #include <mutex>
 #include <vector>
 
-#include "footprint/stamp/stamp.h"
+#include "footprint/stamp/plan_scratch.h"
 
 /// \file
 /// Scratch buffers for planning stamps in parallel. A `Document` owns one pool for all of its strokes.
