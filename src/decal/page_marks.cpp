@@ -14,7 +14,8 @@ namespace {
 constexpr double kMm = 1e-3;
 constexpr double kNumberSize = 5 * kMm;
 constexpr double kTextSize = 2.2 * kMm;
-constexpr double kMarkAt = 5 * kMm;  // of a registration mark, from both edges
+constexpr double kMarkAt = 5 * kMm;       // of a registration mark, from both edges
+constexpr double kLeastScale = 15 * kMm;  // of the colours of strain
 constexpr std::size_t kLongestTitle = 28;
 
 void add_lines(Page& page, const std::vector<std::vector<Vec2>>& lines, Role role) {
@@ -62,25 +63,33 @@ double add_scale_bar(Page& page, const Vec2& at) {
     return at.x + length;
 }
 
-/// Draws the colours of a strain map from 0 to the limit.
-void add_strain_scale(Page& page, const Vec2& at, double limit) {
-    constexpr int kWidth = 200, kHeight = 20;
+/// Draws the colours of a strain map from 0 to the limit, at most `room` wide; returns their right end.
+double add_strain_scale(Page& page, const Vec2& at, double room, double limit) {
+    constexpr double kPixel = 0.2 * kMm, kWidest = 40 * kMm, kHeight = 4 * kMm;
     PrintImage scale;
-    scale.width = kWidth;
-    scale.height = kHeight;
+    scale.width = static_cast<int>(std::min(kWidest, room) / kPixel + 0.5);
+    scale.height = static_cast<int>(kHeight / kPixel + 0.5);
     scale.origin = at;
-    scale.pixel = 0.2 * kMm;
-    scale.alpha.assign(kWidth * kHeight, 255);
-    for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x)
-            for (const std::uint8_t c : strain_colour(limit * (x + 0.5) / kWidth, limit)) scale.rgb.push_back(c);
+    scale.pixel = kPixel;
+    scale.alpha.assign(static_cast<std::size_t>(scale.width) * static_cast<std::size_t>(scale.height), 255);
+    for (int y = 0; y < scale.height; ++y)
+        for (int x = 0; x < scale.width; ++x)
+            for (const std::uint8_t c : strain_colour(limit * (x + 0.5) / scale.width, limit)) scale.rgb.push_back(c);
+    const double width = scale.width * kPixel, height = scale.height * kPixel;
     page.prints.push_back(std::move(scale));
-    const double width = kWidth * 0.2 * kMm, height = kHeight * 0.2 * kMm;
     page.lines.push_back(
         {{at, at + Vec2(width, 0), at + Vec2(width, height), at + Vec2(0, height)}, true, Role::label});
     add_text(page, "0", at + Vec2(0, height + 1 * kMm), kTextSize);
     const std::string end = fmt::format("{:.1f} %", 100 * limit);
     add_text(page, end, at + Vec2(width - text_width(end, kTextSize), height + 1 * kMm), kTextSize);
+    return at.x + width;
+}
+
+/// The first of `texts` that is no longer than `room`, else "".
+std::string first_that_fits(const std::vector<std::string>& texts, double room) {
+    for (const std::string& text : texts)
+        if (text_width(text, kTextSize) <= room) return text;
+    return "";
 }
 
 }  // namespace
@@ -113,25 +122,31 @@ void add_marks(Page& page, const FootText& text) {
     for (const Vec2& at : {Vec2(kMarkAt), Vec2(far.x, kMarkAt), Vec2(kMarkAt, far.y), far})
         add_registration_mark(page, at);
     const Vec2 foot{kPageMargin, kPageMargin};
-    double x = add_scale_bar(page, foot) + 6 * kMm;
-    if (page.strain_map) {
-        add_strain_scale(page, {x, foot.y}, text.limit);
-        x += 46 * kMm;
-    }
     const double grain = page.size.x - kPageMargin - 12 * kMm;
     add_text(page, "GRAIN", {grain - 4 * kMm, foot.y}, kTextSize);
     add_arrow(page, {page.size.x - kPageMargin - 3 * kMm, foot.y + 8 * kMm}, {0, 1}, 8 * kMm);
-    const auto letters = static_cast<std::size_t>(std::max(0.0, (grain - 6 * kMm - x) / kTextSize));
-    const std::string of_map = page.strain_map ? "  STRAIN MAP" : "";
-    const std::size_t longest = std::min(kLongestTitle, letters - std::min(letters, of_map.size()));
-    add_text(page, text.title.substr(0, longest) + of_map, {x, foot.y + 5 * kMm}, kTextSize);
-    const std::string pages = fmt::format("PAGE {}/{}", text.page, text.pages),
-                      strain = fmt::format("  STRAIN {:.1f} OF {:.1f} %", 100 * text.strain, 100 * text.limit);
-    for (const std::string& second : {pages + "  TRUE SIZE 1:1" + strain, pages + strain, pages})
-        if (second.size() <= letters) {
-            add_text(page, second, {x, foot.y}, kTextSize);
-            break;
+    const double right = grain - 6 * kMm;
+    Vec2 first{add_scale_bar(page, foot) + 6 * kMm, foot.y + 5 * kMm}, second{first.x, foot.y};
+    const std::string pages = fmt::format("PAGE {}/{}", text.page, text.pages);
+    const std::string strain = fmt::format("{:.1f} OF {:.1f} %", 100 * text.strain, 100 * text.limit);
+    std::vector<std::string> seconds{pages + "  TRUE SIZE 1:1  STRAIN " + strain, pages + "  STRAIN " + strain};
+    std::string title = text.title.substr(0, kLongestTitle), after;
+    if (page.strain_map) {
+        seconds.insert(seconds.end(), {pages + "  MAX " + strain, "MAX " + strain});
+        if (right - first.x > kLeastScale)
+            first.x = second.x = add_strain_scale(page, second, right - first.x, text.limit) + 6 * kMm;
+        // Above the bars on a page that is narrow.
+        if (right - first.x < text_width(seconds[2], kTextSize)) {
+            first = {foot.x, foot.y + 11.6 * kMm};
+            second = {foot.x, foot.y + 8.2 * kMm};
         }
+        after = title.empty() ? "STRAIN MAP" : "  STRAIN MAP";
+    }
+    while (!title.empty() && text_width(title + after, kTextSize) > right - first.x) title.pop_back();
+    if (title.empty() && page.strain_map) after = "STRAIN MAP";
+    seconds.push_back(pages);
+    add_text(page, title + after, first, kTextSize);
+    add_text(page, first_that_fits(seconds, right - second.x), second, kTextSize);
 }
 
 }  // namespace tuft::decal

@@ -117,6 +117,49 @@ TEST(Decimate, ThousandsOfThinPartsStay) {
     EXPECT_GE(copy.n_polygons(), 4 * 4000u);
 }
 
+// Plates that come back take triangles from the rest, of which larger rings went then.
+TEST(Decimate, NoPartGoesForASmallerOne) {
+    PolygonSoup soup = make_torus(120, 60);
+    constexpr int kParts = 40;
+    std::array<double, kParts> sizes{};  // of the boxes, about
+    for (std::size_t part = 0; part < kParts; ++part) {
+        const auto n = static_cast<std::uint32_t>(soup.points.size());
+        const double x = 100 + 10 * static_cast<double>(part);
+        if (part % 2 == 0) {  // a plate of no thickness
+            sizes[part] = 1.5;
+            const double side = sizes[part] / std::sqrt(2.0);
+            for (const Vec2& p : {Vec2(0, 0), Vec2(side, 0), Vec2(side, side), Vec2(0, side)})
+                soup.points.emplace_back(x + p.x, p.y, 0);
+            for (const auto& [a, b, c] : {std::array{0u, 2u, 1u}, {0u, 3u, 2u}, {0u, 1u, 3u}, {1u, 2u, 3u}})
+                add_polygon(soup, {n + a, n + b, n + c});
+            continue;
+        }
+        sizes[part] = 1.7 + 0.1 * static_cast<double>(part);
+        const PolygonSoup ring = make_torus(12, 8);
+        Box box;
+        for (const Vec3& p : ring.points) box.add(p);
+        for (const Vec3& p : ring.points) soup.points.push_back(Vec3(x, 0, 0) + sizes[part] / box.diagonal() * p);
+        for (std::size_t c = 0; c < ring.corners.size(); c += 3)
+            add_polygon(soup, {n + ring.corners[c], n + ring.corners[c + 1], n + ring.corners[c + 2]});
+    }
+    const TriangleMesh full = build_surface(soup, kMetres).mesh;
+    for (const std::size_t n_triangles : {200u, 300u, 400u, 600u, 1000u}) {
+        const PolygonSoup copy = decimate(full, {.n_triangles = n_triangles});
+        EXPECT_LE(copy.n_polygons(), n_triangles);
+        std::array<bool, kParts> there{};
+        for (const Vec3& p : copy.points)
+            if (p.x > 90) there.at(static_cast<std::size_t>((p.x - 95) / 10)) = true;
+        double smallest = 1e9, largest_lost = 0;
+        for (std::size_t part = 0; part < kParts; ++part) {
+            if (there[part])
+                smallest = std::min(smallest, sizes[part]);
+            else
+                largest_lost = std::max(largest_lost, sizes[part]);
+        }
+        EXPECT_LE(largest_lost, smallest) << n_triangles;
+    }
+}
+
 TEST(Decimate, SameMeshSameBitsAndNoLimitIsRefused) {
     const TriangleMesh full = build_surface(make_torus(60, 30), kMetres).mesh;
     const PolygonSoup a = decimate(full, {.n_triangles = 500}), b = decimate(full, {.n_triangles = 500});

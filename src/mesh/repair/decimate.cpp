@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cfloat>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <span>
@@ -16,6 +17,8 @@
 
 namespace tuft::mesh {
 namespace {
+
+constexpr int kRounds = 6;  // of collapses in which further parts may go
 
 /// Triangles over wedges: a vertex in a group and with a UV.
 struct Wedges {
@@ -179,33 +182,68 @@ class Simplifier {
     std::vector<Vec3f> positions_;  // of wedges
 };
 
-/// Connected parts of which nothing is left though they are larger than `least`, each with fewer triangles where it has
-/// any then; largest first. A thin plate becomes two sides back to back when its walls collapse, and these go as fins.
-std::vector<std::vector<std::uint32_t>> lost_parts(const TriangleMesh& mesh, const Wedges& wedges,
-                                                   const Simplifier& simplify, const std::vector<std::uint32_t>& left,
-                                                   double least) {
-    constexpr double kOfSize = 0.01;  // of a part: what may move where no distance is given
-    constexpr int kTries = 6;
-    const std::vector<std::uint32_t> part = parts_of(wedges, mesh.n_vertices());
-    std::vector<std::uint8_t> there(mesh.n_vertices(), 0);
+/// A connected part of which nothing is left when it is collapsed with the others.
+struct LostPart {
+    std::uint32_t part = 0;  ///< by the smallest of its vertices
+    double size = 0;         ///< metres, of the box round it
+    std::vector<std::uint32_t> corners;
+};
+
+/// The parts of which nothing is in `left` nor in `known` though they are larger than `least`.
+std::vector<LostPart> lost_parts(const Wedges& wedges, const Simplifier& simplify,
+                                 const std::vector<std::uint32_t>& part, const std::vector<std::uint32_t>& left,
+                                 const std::vector<LostPart>& known, double least) {
+    std::vector<std::uint8_t> there(part.size(), 0);
     for (const std::uint32_t corner : left) there[part[wedges.vertex[corner]]] = 1;
+    for (const LostPart& one : known) there[one.part] = 1;
     std::map<std::uint32_t, std::vector<std::uint32_t>> lost;
-    for (std::size_t c = 0; c < wedges.corners.size(); ++c)
-        if (const std::uint32_t p = part[wedges.vertex[wedges.corners[c]]]; !there[p])
-            lost[p].push_back(wedges.corners[c]);
-    std::vector<std::pair<double, std::vector<std::uint32_t>>> parts;
-    for (auto& [first, corners] : lost) {
-        const double size = simplify.box_of(corners).diagonal();
-        if (size <= 2 * least) continue;
-        double error = least > 0 ? 0.25 * least : kOfSize * size;
-        std::vector<std::uint32_t> own;
-        for (int i = 0; i < kTries && own.empty(); ++i, error *= 0.25) own = simplify.of_part(corners, 1, error);
-        parts.emplace_back(size, own.empty() ? std::move(corners) : std::move(own));
+    for (const std::uint32_t corner : wedges.corners)
+        if (const std::uint32_t p = part[wedges.vertex[corner]]; !there[p]) lost[p].push_back(corner);
+    std::vector<LostPart> parts;
+    for (auto& [first, corners] : lost)
+        if (const double size = simplify.box_of(corners).diagonal(); size > 2 * least)
+            parts.push_back({first, size, std::move(corners)});
+    return parts;
+}
+
+/// A part by itself, with fewer triangles where it has any then: a thin plate becomes two sides back to back when its
+/// walls collapse, and these go as fins.
+std::vector<std::uint32_t> reduced(const LostPart& part, const Simplifier& simplify, double error) {
+    constexpr int kTries = 8;
+    for (int i = 0; i < kTries; ++i, error *= 0.25)
+        if (std::vector<std::uint32_t> own = simplify.of_part(part.corners, 1, error); !own.empty()) return own;
+    return part.corners;
+}
+
+/// What lost parts keep of at most `n_triangles` (0: of any number): all of them, as fine as that allows, else the
+/// largest. `error`: metres, 0: as fits each part's size.
+std::vector<std::vector<std::uint32_t>> kept_of(std::vector<LostPart>& parts, const Simplifier& simplify,
+                                                std::size_t n_triangles, double error) {
+    std::sort(parts.begin(), parts.end(),
+              [](const LostPart& a, const LostPart& b) { return std::tie(b.size, a.part) < std::tie(a.size, b.part); });
+    std::vector<std::vector<std::uint32_t>> kept;
+    std::size_t n_corners = 0;
+    for (const double of_error : {0.25, 1.0, 4.0}) {
+        constexpr double kOfSize = 0.04;  // of a part: what may move where no distance is given
+        if (error > 0 && of_error > 1) break;
+        kept.clear();
+        n_corners = 0;
+        for (const LostPart& part : parts) {
+            kept.push_back(reduced(part, simplify, of_error * (error > 0 ? error : kOfSize * part.size)));
+            n_corners += kept.back().size();
+        }
+        if (n_triangles == 0 || n_corners <= 3 * n_triangles) return kept;
     }
-    std::stable_sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-    std::vector<std::vector<std::uint32_t>> out;
-    for (auto& [size, corners] : parts) out.push_back(std::move(corners));
-    return out;
+    n_corners = 0;
+    bool is_full = false;
+    for (std::vector<std::uint32_t>& corners : kept) {
+        is_full |= corners.size() <= 3 * n_triangles && n_corners + corners.size() > 3 * n_triangles;
+        if (is_full || corners.size() > 3 * n_triangles)
+            corners.clear();
+        else
+            n_corners += corners.size();
+    }
+    return kept;
 }
 
 }  // namespace
@@ -216,13 +254,30 @@ PolygonSoup decimate(const TriangleMesh& mesh, const DecimateOptions& options) {
     const Wedges wedges = wedges_of(mesh);
     const Simplifier simplify(mesh, wedges);
     const std::size_t most = std::min(options.n_triangles, mesh.n_triangles());
-    std::vector<std::uint32_t> corners = simplify(wedges.corners, most, options.error);
-    // Lost parts come back as far as half of the triangles that are wanted, the largest first.
-    std::vector<std::uint32_t> back;
-    for (const std::vector<std::uint32_t>& part : lost_parts(mesh, wedges, simplify, corners, options.error))
-        if (most == 0 || 2 * (back.size() + part.size()) <= 3 * most) back.insert(back.end(), part.begin(), part.end());
-    if (most > 0 && corners.size() + back.size() > 3 * most)
-        corners = simplify(wedges.corners, most - back.size() / 3, options.error);
+    const std::vector<std::uint32_t> part = parts_of(wedges, mesh.n_vertices());
+    std::vector<std::uint32_t> corners = simplify(wedges.corners, most, options.error), back;
+    // What lost parts take, at most half of the triangles, is taken from the others, of which more may go then: all
+    // that ever went are looked at again.
+    std::vector<LostPart> lost;
+    for (int round = 0; round < kRounds; ++round) {
+        std::vector<LostPart> more = lost_parts(wedges, simplify, part, corners, lost, options.error);
+        if (more.empty()) break;
+        std::move(more.begin(), more.end(), std::back_inserter(lost));
+        back.clear();
+        std::vector<std::uint8_t> is_kept(mesh.n_vertices(), 0);
+        const std::vector<std::vector<std::uint32_t>> kept =
+            kept_of(lost, simplify, most > 0 ? std::max<std::size_t>(most / 2, 1) : 0, options.error);
+        for (std::size_t i = 0; i < kept.size(); ++i) {
+            is_kept[lost[i].part] = !kept[i].empty();
+            back.insert(back.end(), kept[i].begin(), kept[i].end());
+        }
+        const auto goes_by_itself = [&](std::uint32_t corner) { return is_kept[part[wedges.vertex[corner]]] != 0; };
+        std::erase_if(corners, goes_by_itself);
+        if (most == 0 || corners.size() + back.size() <= 3 * most) continue;
+        corners = wedges.corners;
+        std::erase_if(corners, goes_by_itself);
+        corners = simplify(corners, most - back.size() / 3, options.error);
+    }
     corners.insert(corners.end(), back.begin(), back.end());
     if (corners.empty()) throw Error("nothing is left of the mesh at this distance");
     return soup_of(mesh, wedges, corners);
