@@ -1,7 +1,10 @@
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <regex>
+#include <sstream>
 
 #include "io/image/image.h"
 #include "program.h"
@@ -114,6 +117,54 @@ TEST_F(Decals, WritesItsGuideIntoAFolderNamedWithASlashAndShowsThePiecesInIt) {
         EXPECT_EQ(ran.error_lines(), 1) << ran.err;
         EXPECT_FALSE(fs::exists(path("y.dxf"))) << guide;
     }
+}
+
+// Film round paint at an edge of the model reaches beyond it. The line on the model is whole there: it runs along the
+// edge, within a step of 1 mm, as far as its next points on the model are less than 80 mm apart.
+TEST_F(Decals, TheLinesOfTheGuideAreWholeWhereTheFilmLeavesTheModel) {
+    write("sheet.obj", "v -30 -20 0\nv 30 -20 0\nv 30 20 0\nv -30 20 0\nf 1 2 3 4\n");
+    write("s.svg", R"(<svg xmlns="http://www.w3.org/2000/svg" width="16mm" height="10mm" viewBox="0 0 16 10">)"
+                   R"(<path d="M0 5H16" stroke="#000" stroke-width="10"/></svg>)");
+    const std::string project = path("p.tuft");
+    const test::Ran paint =
+        tuft("paint " + path("sheet.obj") + " --unit mm --place 21,0,0 --place-width 16 --atlas-size 256 --quiet" +
+             " --strokes " + path("s.svg") + " --project " + project);
+    ASSERT_EQ(paint.status, 0) << paint.err;
+    const test::Ran ran =
+        tuft("decals " + project + " -o " + path("x.dxf") + " --quiet --bleed 3mm --guide " + path("guide"));
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    std::ifstream lines(path("guide/lines.obj"));
+    std::vector<std::array<double, 3>> points;
+    std::vector<std::vector<std::size_t>> of_piece;
+    bool is_arrow = false;
+    for (std::string line, word; std::getline(lines, line);) {
+        std::istringstream in(line);
+        in >> word;
+        if (word == "v") {
+            points.emplace_back();
+            for (double& x : points.back()) in >> x;
+        } else if (word == "o") {
+            is_arrow = line.ends_with("_up");
+        } else if (word == "l" && !is_arrow) {
+            of_piece.emplace_back();
+            for (std::size_t i = 0; in >> i;) of_piece.back().push_back(i - 1);
+        }
+    }
+    ASSERT_EQ(of_piece.size(), 1u);
+    double right = 0, length = 0;
+    for (std::size_t i = 0; i < of_piece[0].size(); ++i) {
+        const auto& a = points.at(of_piece[0][i]);
+        const auto& b = points.at(of_piece[0][(i + 1) % of_piece[0].size()]);
+        const double step = std::hypot(b[0] - a[0], b[1] - a[1]);
+        EXPECT_LT(step, 1.5) << i;  // 1 mm along the line; an inner corner is cut short
+        EXPECT_LT(std::abs(a[2]), 1e-6);
+        right = std::max(right, a[0]);
+        length += step;
+    }
+    EXPECT_NEAR(right, 30, 1);
+    // 16 × 10 mm from 13 to 29 mm, 3 mm round it up to the edge at 30, with round corners of 3 mm on the left.
+    EXPECT_NEAR(length, 2 * 20 + 2 * 16 - 2 * 3 * (2 - std::numbers::pi / 2),
+                1.5);  // texels of 0.24 mm, the edge's step
 }
 
 TEST_F(Decals, RefusesBadInputInOneLineAndWritesNothing) {

@@ -45,6 +45,15 @@ TEST_F(ModelFiles, OptionsOfCadAreRefusedForOtherFiles) {
     EXPECT_EQ(fine.error_lines(), 1) << fine.err;
 }
 
+TEST_F(ModelFiles, OptionsThatAFileStatesItselfAreSaidToDoNothing) {
+    const Ran cad = tuft("inspect --unit m --up y " + corpus("stp/box.stp"));
+    EXPECT_EQ(cad.status, 0);
+    for (const char* option : {"--unit is left aside: box.stp", "--up is left aside: box.stp"})
+        EXPECT_NE(cad.err.find(option), std::string::npos) << cad.err;
+    const Ran plain = tuft("inspect --unit mm --up z " + model("bowl.ply"));
+    EXPECT_EQ(plain.err.find("left aside"), std::string::npos) << plain.err;
+}
+
 TEST_F(ModelFiles, AnAssemblyIsPaintedAndKeepsItsNamesAndColoursInGlb) {
     const std::string strokes = write("s.inkml", stroke_file("10 -4 0"));
     const Ran ran = tuft("paint " + corpus("stp/wheels.stp") + " --strokes " + strokes +

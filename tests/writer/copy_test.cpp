@@ -104,6 +104,25 @@ TEST(Copy, ABoxIsThreeStrokes) {
     EXPECT_EQ(make_stroke_line(g.strokes[2].median).stroke_class(), "H");
 }
 
+// Between the junctions at a foot of 木 lies a piece of which one point is left; its direction was 0 / 0.
+TEST(Copy, AStrokeMayBeginWithAPieceOfOnePoint) {
+    const std::vector<Ring> area{{{400, 300}, {600, 300}, {600, 700}, {400, 700}}};
+    Cells ink = cells_over(area, 2, 20);
+    fill(ink, area);
+    Skeleton s;
+    s.nodes = {{{500, 600}, 20, 3}, {{502, 600}, 20, 3}, {{540, 400}, 20, 1}};
+    s.pieces.push_back({.line = {{500, 600}, {502, 600}}, .from = 0, .to = 1});
+    s.pieces.push_back({.line = {}, .from = 1, .to = 2});
+    for (int i = 0; i <= 100; ++i) s.pieces[1].line.emplace_back(502 + 0.38 * i, 600 - 2 * i);
+    for (const bool turned : {false, true}) {
+        const StrokeOrder order{turned ? std::vector<PieceUse>{{1, true}, {0, true}}
+                                       : std::vector<PieceUse>{{0, false}, {1, false}}};
+        const Glyph g = copied_glyph(ink, s, order, U'x');
+        ASSERT_EQ(g.strokes.size(), 1u);
+        for (const Vec2& p : g.strokes[0].median) EXPECT_TRUE(p.x >= 500 && p.x <= 540 && p.y >= 400) << turned;
+    }
+}
+
 TEST(Copy, LeftBeforeRightAndTopBeforeBottom) {
     const Glyph g = copied(photo_of({{{250, 100}, {350, 100}}, {{250, 300}, {350, 300}}, {{80, 80}, {80, 320}}}));
     ASSERT_EQ(g.strokes.size(), 3u);

@@ -336,6 +336,7 @@ int run(const Inspect& a) {
     Console console(a.common.quiet);
     const MeshFacts facts = mesh_facts(a, console.progress());
     console.clear();
+    tell_left_aside(a.file, a, console);
     if (a.common.json)
         print_json(mesh_json(facts, a.file));
     else

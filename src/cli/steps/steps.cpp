@@ -82,6 +82,7 @@ Read read_file(const fs::path& path, const FileReading& how, mesh::RepairOptions
         if (guess.unit != read.frame.unit) console.note(guess.sentence + " (see --unit)");
         read.frame.unit = guess.unit;
     }
+    tell_left_aside(path, how, console);
     repair.metres_per_unit = fixed.value_or(metres_per(read.frame.unit).value_or(kMillimetre));
     repair.y_up = read.frame.y_up && !io::has_fixed_up_axis(path);  // the reader has turned it
     if (!how.sides.empty()) repair.sides = mesh::open_sides_of(how.sides);
@@ -97,6 +98,13 @@ void tell_sides(const mesh::RepairReport& repairs, Console& console) {
 }
 
 }  // namespace
+
+void tell_left_aside(const fs::path& path, const FileReading& how, Console& console) {
+    if (!how.unit.empty() && io::metres_per_unit_of(path))
+        console.note("--unit is left aside: " + path.filename().string() + " is read in the unit that it states");
+    if (!how.up.empty() && io::has_fixed_up_axis(path))
+        console.note("--up is left aside: " + path.filename().string() + " is read with the axes that it states");
+}
 
 DiskCache tip_lag_cache(const Surface& s) {
     return s.no_cache ? DiskCache() : stroke::shared_tip_lag_cache();

@@ -41,6 +41,9 @@ struct Loaded {
 /// file.
 io::CadReading cad_reading(const std::filesystem::path& path, const FileReading& how);
 
+/// Says which of --unit and --up do nothing because a file of this format states it itself.
+void tell_left_aside(const std::filesystem::path& path, const FileReading& how, Console& console);
+
 /// Reads, repairs and unwraps a model file. Its unit is that of the arguments or the format, else it is guessed from
 /// the size. A guess other than millimetres is reported.
 Loaded load_model(const std::filesystem::path& path, const Surface& surface, Console& console);

@@ -49,13 +49,14 @@ std::vector<Vec2> cut_line(const Piece& piece, bool reversed, double head, doubl
     return out.empty() ? line : out;
 }
 
-/// Where the two arms of a corner, continued straight on, meet; nothing if that is farther away than `most`.
+/// Where the two arms of a corner, continued straight on, meet; nothing if that is farther away than `most`, or where
+/// an arm is a single point.
 std::optional<Vec2> corner_of(const std::vector<Station>& in, const std::vector<Vec2>& on, double most) {
     const std::size_t back = std::min<std::size_t>(in.size() - 1, kDirection),
                       ahead = std::min<std::size_t>(on.size() - 1, kDirection);
     const Vec2 a = in.back().centre, u = a - in[in.size() - 1 - back].centre, b = on.front(), v = b - on[ahead];
     const double cross = u.x * v.y - u.y * v.x;
-    if (std::abs(cross) < 0.3 * glm::length(u) * glm::length(v)) return std::nullopt;
+    if (cross == 0 || std::abs(cross) < 0.3 * glm::length(u) * glm::length(v)) return std::nullopt;
     const Vec2 d = b - a;
     const double t = (d.x * v.y - d.y * v.x) / cross, s = (d.x * u.y - d.y * u.x) / cross;
     if (t < 0 || s < 0) return std::nullopt;
