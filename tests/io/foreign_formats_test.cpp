@@ -235,6 +235,32 @@ TEST(ForeignFormats, A3mfHasItsUnitItsComponentsAndAMaterialForEachTriangle) {
     EXPECT_EQ(faces["tet / blue"], 2u);
 }
 
+// Written by lib3mf 1.8.1, whose archives are ZIP64: a box of one inch, and twice a group of that box, turned and twice
+// as large, and of a mirrored wedge of 0.5 x 1 x 0.7 / 6 cubic inches, half as high. Floats.
+TEST(ForeignFormats, A3mfInAZip64ArchiveIsRead) {
+    const mesh::PolygonSoup soup = read_model(corpus("3mf/zip64.3mf"));
+    ASSERT_EQ(soup.n_polygons(), 2u * (12 + 4) + 12);
+    double volume = 0;
+    for (std::size_t p = 0; p < soup.n_polygons(); ++p) {
+        const auto at = [&](std::size_t k) { return soup.points[soup.corners[soup.polygon_start[p] + k]]; };
+        volume += glm::dot(at(0), glm::cross(at(1), at(2))) / 6;
+    }
+    const double inch3 = 0.0254 * 0.0254 * 0.0254;
+    EXPECT_NEAR(volume / inch3, 2 * 0.5 * (8 + 0.5 * 0.7 / 6) + 1, 1e-4);  // its numbers have six digits
+    const Folder folder;
+    const std::string whole = text_of(corpus("3mf/zip64.3mf"));
+    for (std::size_t n = whole.size() - 150; n < whole.size(); n += 2)  // its directory
+        for (const char bad : {'\x00', '\x7f', '\xff'}) {
+            std::string damaged = whole;
+            damaged[n] = bad;
+            try {
+                read_model(folder.write("damaged.3mf", damaged));
+            } catch (const Error& error) {
+                EXPECT_THAT(error.what(), HasSubstr("damaged.3mf: ")) << n;
+            }
+        }
+}
+
 void expect_sets(const std::string& file) {
     const mesh::PolygonSoup soup = read_model(corpus(file));
     const Box box = bounds_of(soup);
@@ -366,11 +392,13 @@ TEST(ForeignFormats, CopiesOfCopiesHaveAnEnd) {
 
 TEST(ForeignFormats, DamagedArchivesAreErrorsInOneLine) {
     const Folder folder;
-    const std::string whole = text_of(corpus("3mf/box.3mf"));
-    for (std::size_t n = 1; n < whole.size(); n += 13) {
-        const std::string fault = fault_of(folder.write("cut.3mf", whole.substr(0, n)));
-        EXPECT_THAT(fault, HasSubstr("cut.3mf: ")) << n;
-        EXPECT_EQ(fault.find('\n'), fault.npos) << fault;
+    for (const char* name : {"3mf/box.3mf", "3mf/zip64.3mf"}) {
+        const std::string whole = text_of(corpus(name));
+        for (std::size_t n = 1; n < whole.size(); n += 13) {
+            const std::string fault = fault_of(folder.write("cut.3mf", whole.substr(0, n)));
+            EXPECT_THAT(fault, HasSubstr("cut.3mf: ")) << n;
+            EXPECT_EQ(fault.find('\n'), fault.npos) << fault;
+        }
     }
     EXPECT_THAT(fault_of(folder.write("no.3mf", "PK not at all, whatever the name says")), HasSubstr("cut short"));
 }

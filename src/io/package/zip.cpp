@@ -14,8 +14,11 @@
 namespace tuft::io {
 namespace {
 
-constexpr std::size_t kEndSize = 22, kCentralSize = 46, kLocalSize = 30, kLongestComment = 65535;
+constexpr std::size_t kEndSize = 22, kCentralSize = 46, kLocalSize = 30, kLocatorSize = 20, kLongestComment = 65535;
 constexpr std::uint32_t kEnd = 0x06054b50, kCentral = 0x02014b50, kLocal = 0x04034b50;
+// ZIP64: numbers that are all ones in the old fields stand in records of their own.
+constexpr std::uint32_t kLocator = 0x07064b50, kEnd64 = 0x06064b50, kAllOnes = 0xffffffff;
+constexpr std::size_t kOfZip64 = 1;  // kind of an entry's extra field
 
 }  // namespace
 
@@ -23,12 +26,32 @@ void Zip::fail(const Message& what) const {
     throw Error(file_, what);
 }
 
-std::uint32_t Zip::number(std::size_t at, int n_bytes) const {
+std::size_t Zip::number(std::size_t at, int n_bytes) const {
     if (at > bytes_.size() || bytes_.size() - at < static_cast<std::size_t>(n_bytes)) fail("the archive is cut short");
-    std::uint32_t value = 0;
+    std::size_t value = 0;
     for (int k = n_bytes - 1; k >= 0; --k)
         value = value << 8 | static_cast<unsigned char>(bytes_[at + static_cast<std::size_t>(k)]);
     return value;
+}
+
+void Zip::read_zip64(std::size_t at, std::size_t size, Entry& entry) const {
+    for (const std::size_t end = at + size; at + 4 <= end;) {
+        const std::size_t kind = number(at, 2), length = number(at + 2, 2);
+        at += 4;
+        if (kind != kOfZip64) {
+            at += length;
+            continue;
+        }
+        const std::size_t last = std::min(end, at + length);
+        for (std::size_t* value : {&entry.size, &entry.packed, &entry.offset}) {
+            if (*value != kAllOnes) continue;
+            if (at + 8 > last) fail("the archive's directory is damaged");
+            *value = number(at, 8);
+            at += 8;
+        }
+        return;
+    }
+    fail("the archive's directory is damaged");
 }
 
 Zip::Zip(std::span<const char> bytes, std::string file)
@@ -40,17 +63,24 @@ Zip::Zip(std::span<const char> bytes, std::string file)
         if (end == least) fail("the archive is cut short: it has no directory");
         --end;
     }
-    const std::size_t n = number(end + 10, 2);
-    std::size_t at = number(end + 16, 4);
-    if (at == 0xffffffff || n == 0xffff) fail("is a ZIP64 archive, which tuft does not read");
+    std::size_t n = number(end + 10, 2), at = number(end + 16, 4);
+    if (at == kAllOnes || n == 0xffff) {
+        if (end < kLocatorSize || number(end - kLocatorSize, 4) != kLocator) fail("the archive's directory is damaged");
+        const std::size_t end64 = number(end - kLocatorSize + 8, 8);
+        if (number(end64, 4) != kEnd64) fail("the archive's directory is damaged");
+        n = number(end64 + 32, 8);
+        at = number(end64 + 48, 8);
+    }
     for (std::size_t i = 0; i < n; ++i) {
         if (number(at, 4) != kCentral) fail("the archive's directory is damaged");
         const std::size_t name = number(at + 28, 2), extra = number(at + 30, 2), comment = number(at + 32, 2);
         if (at + kCentralSize + name > bytes.size()) fail("the archive is cut short");
-        const Entry entry{.offset = number(at + 42, 4),
-                          .packed = number(at + 20, 4),
-                          .size = number(at + 24, 4),
-                          .method = static_cast<int>(number(at + 10, 2))};
+        Entry entry{.offset = number(at + 42, 4),
+                    .packed = number(at + 20, 4),
+                    .size = number(at + 24, 4),
+                    .method = static_cast<int>(number(at + 10, 2))};
+        if (entry.offset == kAllOnes || entry.packed == kAllOnes || entry.size == kAllOnes)
+            read_zip64(at + kCentralSize + name, extra, entry);
         const bool encrypted = number(at + 8, 2) & 1;
         if (encrypted) fail("the archive is encrypted");
         entries_.emplace(std::string(bytes.data() + at + kCentralSize, name), entry);
@@ -67,6 +97,7 @@ std::vector<char> Zip::read(const std::string& name) {
     const std::size_t begin = entry.offset + kLocalSize + number(entry.offset + 26, 2) + number(entry.offset + 28, 2);
     if (begin > bytes_.size() || bytes_.size() - begin < entry.packed) fail(Message("{}is cut short", what));
     if (entry.size > budget_) fail(Message("{}is larger than its archive allows", what));
+    if (std::max(entry.size, entry.packed) >= kAllOnes) fail(Message("{}is larger than 4 GiB", what));
     budget_ -= entry.size;
     const std::span packed = bytes_.subspan(begin, entry.packed);
     if (entry.method == 0) return {packed.begin(), packed.end()};
