@@ -11,8 +11,9 @@ namespace {
 constexpr double T = kPeriod;
 constexpr double kRootMass = 0.02;       // m, kg
 constexpr double kVelocityTime = 4e-3;   // s, of the low-pass of v_x: B count / T would be 0.3 N of noise
-constexpr double kCourseTime = 16e-3;    // s, of a low-pass of the velocity: long to let counts of a slow hand pass
-constexpr double kRestTime = 50e-3;      // s, in which x comes to what is measured of an arm that stands
+constexpr double kCourse = 16;           // periods in which the course of a fast arm becomes another
+constexpr double kRest = 200;            // periods, at most, in which x comes to what is measured of an arm that stands
+constexpr double kEased = 10;            // periods in which x of a slow one comes to where it was not expected
 constexpr double kFadeStiffness = 1000;  // N/m
 constexpr double kRootStiffness = 2 * kRootMass / (T * T);  // N/m
 constexpr double kFadeFree = 0.01;                          // N that g may jump in a period
@@ -29,10 +30,10 @@ constexpr double kMostDelayed = 12;       // periods
 constexpr double kLeast = 0.5e-6;         // J to which an empty tank is filled, so that it does not lock at no force
 constexpr double kMostLent = 0.8e-6;      // J of it in a contact
 constexpr double kFlicker = 1.8;          // counts that a position at rest flickers by, on two axes at once
-constexpr double kWithin = 0.5;           // counts from what is measured to x
-constexpr double kStopped = 2;            // counts that an arm would have moved on by
-constexpr int kStill = 1000;              // periods
-constexpr double kCountError = 0.5;       // counts between a measured and a true position
+constexpr double kWithin = 0.5;           // counts from what is measured to x, but for what goes into it slowly
+constexpr double kStopped = 1.5;          // counts that an arm would have moved on by
+constexpr double kStill = 1000;           // periods
+constexpr double kCountError = 0.5;       // counts between a measured and a true position, along an axis
 constexpr double kCountedShare = 0.3;     // of a change of force that is counted at once
 constexpr double kMostAcceleration = 60;  // m/s², of a hand
 constexpr double kMostTurning = 500;      // rad/s², of a wrist
@@ -53,32 +54,58 @@ Vec3 expected_motion(const LawState& s, std::size_t j) {
     return T * (s.arm.velocity + ahead * (s.arm.velocity - s.arm.velocity_before));
 }
 
+/// d⁺ along one axis of the device, m, from d − Δx_c; `course` is v_c along it. `came`: a count has come.
+double follow_axis(double count, bool came, double d, CountedAxis& axis, double& course) {
+    axis.lasted = std::min(axis.lasted + 1, kStill);
+    if (came) axis = {.lasted = 0, .before = axis.lasted, .came = std::abs(course)};
+    const double n = std::max(axis.before, axis.lasted), next = d + T * course;
+    const double missed = std::clamp(next, -kWithin * count, kWithin * count) - next;
+    // Counts of a slow hand come one by one: what was not expected of them goes into x in some periods.
+    const double mended = missed / std::clamp(n / 3, 1.0, kEased);
+    course += mended / (T * std::max(kCourse, n));
+    d = std::clamp(next + mended, -count, count);
+    // An arm that still moved would have come to another count by now. One that stands may be anywhere between two.
+    if (axis.lasted == kStill || T * axis.came * axis.lasted > kStopped * count) {
+        const double share = 1 / std::clamp(axis.before, kCourse, kRest);
+        d -= share * d;
+        course -= share * course;
+    }
+    return d;
+}
+
 /// Moves x on, and returns by what.
-Vec3 follow_arm(const LawOptions& options, LawState& s, const Vec3& measured) {
+Vec3 follow_arm(const LawOptions& options, LawState& s, const LawInput& in) {
     ArmMotion& arm = s.arm;
     const double count = options.limits.count * options.scale, passed = settled_part(T, kVelocityTime);
-    const Vec3 before = arm.position;
-    Vec3 next = T * arm.course;
-    arm.still = measured == arm.measured ? std::min(arm.still + 1, kStill) : 0;
-    // An arm that still moved would have come to other counts by now.
-    if (glm::length(next) * arm.still > kStopped * count) arm.still = kStill;
-    // One that stands may be anywhere between two counts: in the middle x is off by half of one at most.
-    if (arm.still == kStill) next = settled_part(T, kRestTime) * (measured - before);
-    arm.measured = measured;
-    arm.position = measured + limited(before + next - measured, kWithin * count);
+    const Quat to_device = glm::conjugate(in.axes);
+    const Vec3 before = arm.position, counted = to_device * (in.arm - arm.measured);
+    Vec3 d = to_device * (before - in.arm), course = to_device * arm.course;
+    for (int i = 0; i < 3; ++i)
+        d[i] = follow_axis(count, std::abs(counted[i]) > 0.5 * count, d[i], arm.axes[static_cast<std::size_t>(i)],
+                           course[i]);
+    arm.measured = in.arm;
+    arm.position = in.arm + in.axes * d;
+    arm.course = in.axes * course;
     const Vec3 moved = arm.position - before;
-    arm.course += ((arm.still < kStill ? moved / T : Vec3{0}) - arm.course) * settled_part(T, kCourseTime);
     arm.velocity += (moved / T - arm.velocity) * passed;
     arm.velocity_before += (arm.velocity - arm.velocity_before) * passed;
     return moved;
 }
 
+/// r: how far the root at `root` went by itself against `jump`, m, while the arm made `moved`.
+double gone_against(const LawState& s, const Vec3& jump, const Vec3& moved, const Vec3& root) {
+    const double size = glm::length(jump);
+    if (!(size > 0)) return 0;
+    const Vec3 back = s.fade.root - root;
+    return std::max(0.0, std::min(glm::dot(back, jump), glm::dot(back + moved, jump)) / size);
+}
+
 /// Step 2.
-Vec3 faded(const LawOptions& options, LawState& s, const Vec3& g, double moved, const Vec3& root) {
+Vec3 faded(const LawOptions& options, LawState& s, const Vec3& g, const Vec3& moved, const Vec3& root) {
     const Vec3 jump = g - s.fade.force;
     const double size = glm::length(jump), old = glm::length(s.fade.offset);
-    const double allowed = std::min(options.limits.max_stiffness / options.scale, kFadeStiffness) * moved +
-                           kRootStiffness * glm::distance(root, s.fade.root) + kFadeFree;
+    const double allowed = std::min(options.limits.max_stiffness / options.scale, kFadeStiffness) * glm::length(moved) +
+                           kRootStiffness * gone_against(s, jump, moved, root) + kFadeFree;
     s.fade.root = root;
     s.fade.offset = old > kFadeRate ? s.fade.offset * (1 - kFadeRate / old) : Vec3{0};
     if (size > allowed) s.fade.offset -= jump * (1 - allowed / size);
@@ -143,14 +170,21 @@ double paid_by_friction(const LawOptions& options) {
     return options.restore ? kFrictionShare * options.limits.friction : 0;
 }
 
-/// Step 6 before the force of this period: what the last one has given over the path `moved` of x.
-void settle_tank(const LawOptions& options, LawState& s, const LawInput& in, const Vec3& moved) {
+/// |v|₁ along the axes of the device.
+double along_axes(const LawInput& in, const Vec3& v) {
+    const Vec3 parts = glm::abs(glm::conjugate(in.axes) * v);
+    return parts.x + parts.y + parts.z;
+}
+
+/// Step 6 before the force of this period: what the last one has given over the path `moved` of x from x_c + `d`.
+void settle_tank(const LawOptions& options, LawState& s, const LawInput& in, const Vec3& moved, const Vec3& d) {
     const double count = options.limits.count * options.scale;
-    const Vec3& acted = acted_over(s, moved);
-    // The true position is within a count: by Abel's sum its work differs by that times the change of force. What
-    // counts stir up in a force goes against their error and takes no energy: it is smoothed out.
+    const Vec3 acted = acted_over(s, moved);
+    // What counts stir up in a force goes against their error and takes no energy: it is smoothed out.
     const Vec3 change = kCountedShare * (acted - s.tank.counted_force);
-    s.tank.energy -= glm::dot(acted, moved) + kCountError * count * glm::length(change);
+    s.tank.energy -=
+        glm::dot(acted, moved) + glm::dot(acted - s.tank.acted, d) + kCountError * count * along_axes(in, change);
+    s.tank.acted = acted;
     s.tank.counted_force += change;
     if (const double path = glm::distance(s.arm.position, s.tank.played); path > kFlicker * count) {
         s.tank.landed += path;
@@ -288,14 +322,15 @@ void restart_law(LawState& state, const Vec3& arm, const Quat& rotation) {
 LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     if (!s.started) restart_law(s, in.arm, in.rotation);
     const double K = coupling_of(options), B = 2 * std::sqrt(K * kRootMass), m = kRootMass;
-    const Vec3 moved = follow_arm(options, s, in.arm), turned = turn_between(s.arm.rotation, in.rotation);
+    const Vec3 d = s.arm.position - s.arm.measured;
+    const Vec3 moved = follow_arm(options, s, in), turned = turn_between(s.arm.rotation, in.rotation);
     s.sent.delay = static_cast<std::size_t>(std::clamp(std::ceil(options.delay / T - 1e-9), 0.0, kMostDelayed));
-    settle_tank(options, s, in, moved);
+    settle_tank(options, s, in, moved, d);
     s.arm.rotation = in.rotation;
 
     const double gain = options.gain * in.trust;
     const Vec3 hair = in.hair ? gain * in.hair->force : Vec3{0};
-    const Vec3 g = faded(options, s, hair, glm::length(moved), in.hair ? in.hair->pose.position : s.fade.root);
+    const Vec3 g = faded(options, s, hair, moved, in.hair ? in.hair->pose.position : s.fade.root);
     const Vec3 pull = K * (s.arm.position + s.root.restored - s.root.position) + B * s.arm.velocity + g;
     Vec3 velocity = (m * s.root.velocity + T * pull) / (m + T * (K * T + B));
     Vec3 root = s.root.position + T * velocity;

@@ -11,15 +11,23 @@
 /// force on the hand. Pure: no clock, no thread, no memory allocation. `Servo` (servo.h) calls it.
 ///
 /// Frame: world, metres at the brush. x is the arm, y the virtual root of the tuft, which a coupling holds to the arm.
-/// Hair is solved at y, and the stroke is painted from y. The arm reads its place in counts. x goes on within them as
-/// it went: x = x_c + [x + T v_c − x_c], the bracket of at most half a count, x_c what is measured, v_c the velocity of
-/// x low-passed at 16 ms. Where two counts should have come and none has, the arm stands, and x comes to x_c in 50 ms.
-/// So counts stir up neither spring nor damper, and x does not flicker between two of them. In each period:
+/// Hair is solved at y, and the stroke is painted from y. The arm reads its place, x_c, in counts along its own axes.
+/// x goes on between them by its course v_c, axis by axis: x = x_c + d,
+///
+///     d⁺ = d + T v_c − Δx_c + c,   c = (0 or what lacks to |d⁺| = ½ count) / clamp(n / 3, 1, 10),
+///     v_c += c / (T max(16, n)),
+///
+/// n the periods since the last count or from that before to it, whichever are more. Where 1.5 counts should have come
+/// and none has, the arm stands: d falls to 0 in 16 to 200 periods, and then is wrong by half a count at most. So
+/// counts stir up neither spring nor damper, however slow the hand is, and x does not flicker between two of them. In
+/// each period:
 ///
 /// 1. g = G F(y, q).
-/// 2. Fade. What g jumps beyond a = min(k_max, 1000 N/m) |Δx| + 2 m/T² |Δy| + 0.01 N goes into an offset o −= jump − a;
-///    |o| falls by 0.06 N a period; g += o. The second term is what the root's own motion may do to hair that is half
-///    as stiff as step 3 bears: late, it would make the root swing.
+/// 2. Fade. What g jumps beyond a = min(k_max, 1000 N/m) |Δx| + 2 m/T² r + 0.01 N goes into an offset o −= jump − a;
+///    |o| falls by 0.06 N a period; g += o. r is how far the root went by itself against the jump: the lesser of its
+///    way and its way relative to the arm along −jump, at least 0. Hair that is a spring H answers Δy by −H Δy, and
+///    |H Δy|² <= h Δy · H Δy where it is no stiffer than h: r 2 m/T² is what hair does that is half as stiff as step 3
+///    bears. Late, it would make the root swing.
 /// 3. Coupling, implicit [Colgate1995], [Adams1999]:
 ///
 ///        v⁺ = (m v + T (K (x + s − y) + B v_x + g)) / (m + T (K T + B)),   y += T v⁺,
@@ -28,20 +36,20 @@
 ///    m = 0.02 kg, B = 2 √(K m), v_x low-passed at 4 ms. y keeps to the free side of the bounds of ferrule and handle
 ///    (a proxy [Ruspini1997]); along them acts Coulomb friction. The arm never shows more than K.
 /// 4. Restore, optional: s += (T / 0.15 s) (x − y) takes the softness of the coupling away in the long run. The hand
-/// has
-///    then pressed a softer spring than the hair that it feels. The friction of the arm pays for it: e += f_r (|Δx′| −
-///    count), x′ following x behind a play of 1.8 counts, and f_r = 0.7 f_c is added to the limits of |f| in step 6.
-///    Port and wrist alone may then give energy back.
+///    has then pressed a softer spring than the hair that it feels. The friction of the arm pays for it:
+///    e += f_r (|Δx′| − count), x′ following x behind a play of 1.8 counts, and f_r = 0.7 f_c is added to the limits of
+///    |f| in step 6. Port and wrist alone may then give energy back.
 /// 5. Clamp to the device and to 7.9 N. A moment is scaled with its force. While only hair touches, f changes by at
 ///    most k_max |Δx̂| + 0.1 N, but for a fade, in which it may get smaller at once: the damper alone gives 0.3 N in a
 ///    period to a hand that turns round at 60 m/s².
-/// 6. Tank (a passivity observer and controller [Hannaford2002]): e −= f₋ · Δx + ½ count |Δf̄|, e −= G τ · Δθ. f₋ is
-///    the force that acted, sent as long ago as the delay says (of two periods the worse), f̄ the same low-passed at
-///    3 ms. x and the true position are between the same two counts, and equal where one count becomes the next, so
-///    that by Abel's summation the second term pays for what the count hides.
-///    e <= e_0 + G stored + ½ K |y − x − s|² + ½ m v², e_0 = 30 µJ. A contact begins with e = ½ K |y − x − s|² + ½ m
-///    v², which came from the hand. An empty tank is filled to 0.5 µJ, with 0.8 µJ at most in a contact, from which a
-///    hand that moves fills it by itself. When free, e is at least e_0.
+/// 6. Tank (a passivity observer and controller [Hannaford2002]): e −= f₋ · Δx + Δf₋ · d + ½ count |Δf̄|₁,
+///    e −= G τ · Δθ. f₋ is the force that acted, sent as long ago as the delay says (of two periods the worse), f̄ the
+///    same low-passed at 3 ms, d that of the period's beginning. By Abel's summation the second term turns the work
+///    along x into that along x_c, and the third, a sum over the axes of the device, pays for what counts hide: the
+///    true place is within half a count of x_c along each. e <= e_0 + G stored + ½ K |y − x − s|² + ½ m v², e_0 = 30
+///    µJ. A contact begins with e = ½ K |y − x − s|² + ½ m v², which came from the hand. An empty tank is filled to 0.5
+///    µJ, with 0.8 µJ at most in a contact, from which a hand that moves fills it by itself. When free, e is at least
+///    e_0.
 ///
 ///        |f| <= min(e′ / a, max(P, |f₋₁| − k_max |Δx̂| − 0.08 N)),   a = Δx · f̂ + 60 m/s² T² (1 + delay / T) + count,
 ///        P = e″ / ((n + 1) â) + n k â / 2,  n the most with k â² n (n + 1) / 2 <= e″,   k = min(0.9 k_max, 1.25 K).
@@ -70,12 +78,19 @@ struct LawOptions {
     double most_force = kForceLimit;  ///< N
 };
 
+/// Counts along an axis of the device.
+struct CountedAxis {
+    double lasted = 0;  ///< periods since the last one came
+    double before = 0;  ///< periods from the one before to it
+    double came = 0;    ///< m/s, |v_c| along the axis then
+};
+
 /// The arm in the period before.
 struct ArmMotion {
-    Vec3 position{0};           ///< x, m
-    Vec3 measured{0};           ///< m
-    Vec3 course{0};             ///< v_c, m/s, low-passed at 16 ms
-    int still = 0;              ///< periods in which that has not changed
+    Vec3 position{0};  ///< x, m
+    Vec3 measured{0};  ///< x_c, m
+    Vec3 course{0};    ///< v_c, m/s
+    std::array<CountedAxis, 3> axes{};
     Quat rotation{1, 0, 0, 0};  ///< q
     Vec3 velocity{0};           ///< v_x, m/s, low-passed
     Vec3 velocity_before{0};    ///< m/s, v_x low-passed once more: 4 ms behind it
@@ -108,7 +123,8 @@ struct EnergyTank {
     double lent = 0;        ///< J, to an empty tank in this contact
     double landed = 0;      ///< m, path of x′ since the contact began
     Vec3 played{0};         ///< x′, m
-    Vec3 counted_force{0};  ///< N, f₋ smoothed
+    Vec3 acted{0};          ///< f₋ of the period before, N
+    Vec3 counted_force{0};  ///< f̄, N
 };
 
 /// State of the law between two periods.
@@ -127,8 +143,9 @@ struct LawState {
 
 /// Input of one period.
 struct LawInput {
-    Vec3 arm{0};                       ///< x, m, world
+    Vec3 arm{0};                       ///< x_c, m, world
     Quat rotation{1, 0, 0, 0};         ///< q
+    Quat axes{1, 0, 0, 0};             ///< turns the axes of the device, along which it counts, into the world
     const HairAnswer* hair = nullptr;  ///< newest answer, or none yet
     double trust = 1;                  ///< of the answer: 1 fresh … 0 too old; scales its force
     double pass = 1;  ///< of the force: 0 on a fault or a pause … 1; scales what leaves, before the tank

@@ -62,6 +62,7 @@ ServoOutput Servo::finish(const HairAnswer* newest) {
     const LawOutput law = step_law(options_, law_,
                                    {.arm = arm_,
                                     .rotation = rotation_,
+                                    .axes = workspace_.rotation,
                                     .hair = newest,
                                     .trust = newest ? trust_at_age(out.age) : 0,
                                     .pass = verdict_.pass});

@@ -51,21 +51,38 @@ TEST(Law, RestoreTakesTheSoftnessAway) {
     EXPECT_NEAR(force, 15 * 20 * 2e-3, 0.01 * 15 * 20 * 2e-3);
 }
 
+Vec3 in_counts(const DeviceLimits& limits, const Vec3& x) {
+    return limits.count * glm::round(x / limits.count);
+}
+
 // A hand that goes on evenly in the air feels the inertia of the root at its start and then nothing, however coarse the
-// counts of the arm are: a saw of 0.1 N on Falcon before.
+// counts of the arm are and however seldom they come: a saw of 0.1 N on Falcon before.
 TEST(Law, CountsOfAnEvenMotionAreNotFelt) {
     for (const DeviceLimits& limits : device_presets())
-        for (const double speed : {0.01, 0.017, 0.03, 0.1}) {
+        for (const double speed : {2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 0.01, 0.017, 0.03, 0.1}) {
             const LawOptions options{.limits = limits};
+            const double between = limits.count / (speed * kPeriod);  // periods
             LawState state;
             double most = 0;
-            for (int i = 0; i < 1000; ++i) {
-                const double x = speed * kPeriod * i;
-                const Vec3 measured{0, 0, limits.count * std::round(x / limits.count)};
+            for (int i = 0; i < 1000 + 10 * between; ++i) {
+                const Vec3 measured = in_counts(limits, {0, 0, speed * kPeriod * i});
                 const double f = glm::length(step_law(options, state, {.arm = measured}).force);
-                if (i > 200) most = std::max(most, f);
+                if (i > 200 + 5 * between) most = std::max(most, f);
             }
             EXPECT_LT(most, 0.02) << limits.name << " " << speed;  // N, about what a finger feels
+        }
+}
+
+// Where a hand has come to rest between two counts nothing tells. x is in the middle, never a whole count off.
+TEST(Law, AnArmThatStandsIsKnownToHalfACount) {
+    for (const DeviceLimits& limits : device_presets())
+        for (int part = 0; part < 20; ++part) {
+            const LawOptions options{.limits = limits};
+            const Vec3 to = (1e-3 + limits.count * part / 20.0) * Vec3{1, 0, 0};
+            LawState state;
+            for (int i = 0; i < 1500; ++i)
+                step_law(options, state, {.arm = in_counts(limits, smooth_step(i / 500.0) * to)});
+            EXPECT_LT(glm::distance(state.arm.position, to), 0.51 * limits.count) << limits.name << " " << part;
         }
 }
 
@@ -103,6 +120,28 @@ TEST(Law, AJumpOfTheHairComesAsARamp) {
         // 0.06 N of the fade and 0.01 N free, through a critically damped coupling.
         EXPECT_LE(glm::distance(f, before), 0.075) << i;
         before = f;
+    }
+}
+
+// Hair that snaps over while the hand drags it along. The fade once let pass 40 kN/m of any way that the root went.
+TEST(Law, AJumpOfTheHairInADragComesAsARamp) {
+    const LawOptions options{.limits = device_preset("omega.6"), .gain = 1};
+    const double way = kPeriod * 0.05;  // m a period
+    for (const Vec3& jump : {Vec3{-1.5, 0, 0}, Vec3{1.5, 0, 0}, Vec3{0, 0, 1.5}}) {
+        LawState state;
+        HairAnswer hair{.stored = 1, .touching = true};
+        Vec3 before{0};
+        for (int i = 0; i < 500; ++i) {
+            hair.force = Vec3{-2 * smooth_step(i / 200.0), 0, 0} + (i < 300 ? Vec3{0} : jump);
+            hair.pose.position = state.root.position;
+            const Vec3 f = step_law(options, state, {.arm = {way * i, 0, 0}, .hair = &hair}).force;
+            if (i > 200) {
+                // 0.06 N of the fade, 0.01 N free and 1000 N/m of the arm's way, through a critically damped coupling.
+                EXPECT_LE(glm::distance(f, before), 0.07 + 1000 * way) << i;
+            }
+            before = f;
+        }
+        EXPECT_LT(glm::distance(before, hair.force), 0.02);
     }
 }
 
@@ -225,6 +264,54 @@ TEST(Law, NoHairTakesMoreThanTheTankLends) {
             }
             EXPECT_GE(least, -kLent) << limits.name << " " << seed;
         }
+}
+
+// A force that rises and falls with a quick hand: x lags by up to a count, always to the side on which that gives.
+// Along an axis of the arm, and askew to all three, where counts hide more.
+TEST(Law, ForcesThatComeWithTheMotionTakeNoMoreThanTheTankLends) {
+    for (const DeviceLimits& limits : device_presets())
+        for (const Vec3& along : {Vec3{0, 0, 1}, glm::normalize(Vec3{1, 1, 1})})
+            for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+                Random random(seed);
+                const LawOptions options{.limits = limits, .gain = 1};
+                const double rate = random.uniform(20, 100), size = std::min(0.02, 55 / (rate * rate));
+                const double phase = random.uniform(0, 6.28);
+                LawState state;
+                HairAnswer hair{.stored = 1, .touching = true};
+                double energy = 0, least = 0;
+                Vec3 force{0}, before{0};
+                for (int i = 0; i < 3000; ++i) {
+                    const double t = kPeriod * i;
+                    const Vec3 x = size * smooth_step(t / 0.5) * std::sin(rate * t) * along;
+                    energy -= glm::dot(force, x - before);
+                    least = std::min(least, energy);
+                    const double push = 0.5 + 0.5 * smooth_step((t - 0.2) / 0.5) * std::sin(rate * t + phase);
+                    hair.force = 0.8 * limits.max_force * push * along;
+                    hair.pose.position = state.root.position;
+                    force = step_law(options, state, {.arm = in_counts(limits, x), .hair = &hair}).force;
+                    before = x;
+                }
+                EXPECT_GE(least, -most_lent(options)) << limits.name << " " << seed;
+            }
+}
+
+// Counts are along the arm's axes, however these stand in the world.
+TEST(Law, AnArmThatIsTurnedFeelsTheSame) {
+    const DeviceLimits& limits = device_preset("falcon");
+    const LawOptions options{.limits = limits, .gain = 15};
+    const Quat turn = glm::angleAxis(0.7, glm::normalize(Vec3{1, 2, 3}));
+    LawState straight, turned;
+    for (int i = 0; i < 2000; ++i) {
+        const double t = kPeriod * i;
+        const Vec3 x =
+            in_counts(limits, {3e-3 * std::sin(9 * t), 2e-3 * std::sin(7 * t), 2e-3 * std::cos(5 * t) - 1e-3});
+        const HairAnswer hair = spring(straight.root.position.z, 20);
+        HairAnswer other = hair;
+        other.force = turn * hair.force;
+        const Vec3 f = step_law(options, straight, {.arm = x, .hair = &hair}).force;
+        const Vec3 g = step_law(options, turned, {.arm = turn * x, .axes = turn, .hair = &other}).force;
+        EXPECT_LT(glm::distance(turn * f, g), 1e-6) << i;
+    }
 }
 
 /// omega.6 with motors in its wrist.

@@ -113,6 +113,31 @@ TEST(Trial, AStiffFlatBrushGivesBackNothing) {
     expect_no_energy(load_trial_model("sheet"), "bright-12", {HandMotion::taps});
 }
 
+// Taps in the bowl press and let go within 60 ms: the tank took x for the place of the arm, which it was behind by up
+// to a count, and gave back 17 µJ.
+TEST(Trial, AStiffFlatBrushTappedIntoABowlGivesBackNothing) {
+    const TrialModel f = load_trial_model("bowl");
+    const brush::Tuft tuft = tuft_of("bright-12");
+    TrialOptions options = options_for(device_preset("touch"));
+    options.law.gain = tuft.preset.force_gain;
+    options.seconds = 4;
+    const TrialReport r = run_trial(tuft, *f.surface, hand_path(HandMotion::taps, f.place, tuft.preset), options);
+    EXPECT_GE(r.least_energy, -kMicrojoule);
+    EXPECT_LE(r.largest_step, allowed_step(options.law.limits));
+}
+
+// Hair that snaps over the car's edge while the hand moves along it: 0.13 N on omega.6 while the fade let pass what
+// hair did in any motion of the root, whichever way it went.
+TEST(Trial, HairThatSnapsOverAnEdgeComesAsARamp) {
+    const TrialModel f = load_trial_model("edge");
+    const brush::Tuft tuft = tuft_of("wolf-medium");
+    const DeviceLimits& omega = device_preset("omega.6");
+    for (const HandMotion motion : {HandMotion::press_fast, HandMotion::circles, HandMotion::rocking}) {
+        const TrialReport r = run_trial(tuft, *f.surface, hand_path(motion, f.place, tuft.preset), options_for(omega));
+        EXPECT_LE(r.largest_step, 0.08) << name_of(motion);  // N: 0.06 of the fade, and a count of 10 µm on 2,000 N/m
+    }
+}
+
 /// Extent along the normal of the roots of the last 0.3 s of a slow press that stands still, m, after `report`.
 double swing_of(const TrialReport& report, const TrialModel& f) {
     double least = 1e9, most = -1e9;
