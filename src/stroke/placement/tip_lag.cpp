@@ -13,6 +13,7 @@
 #include "stroke/gesture/roll.h"
 #include "stroke/gesture/tractrix.h"
 #include "stroke/placement/tip_lag_code.h"
+#include "stroke/placement/turn_back.h"
 
 namespace tuft::stroke {
 namespace {
@@ -44,6 +45,8 @@ std::pair<std::size_t, double> cell_of(const std::array<double, N>& grid, double
     return {i, f < kOnGrid ? 0 : f > 1 - kOnGrid ? 1 : f};  // a value of the grid needs no other
 }
 
+}  // namespace
+
 double tip_lag_length(std::span<const TipLag> table, double depth) {
     if (table.empty()) return 0;
     if (depth <= table.front().depth)
@@ -54,8 +57,6 @@ double tip_lag_length(std::span<const TipLag> table, double depth) {
     }
     return table.back().length;
 }
-
-}  // namespace
 
 template <class T, class Measure>
 std::vector<T> TiltedTipLag::read_or_measure(std::string_view kind, std::span<const std::size_t> place, std::size_t n,
@@ -361,15 +362,10 @@ Vec2 dot_direction(const StrokeSample& first, const HolderOptions& options) {
 }
 
 constexpr double kCutsOfString = 6;  // pieces of its length, into which the path is cut where a string is slack
-constexpr double kLifted = 0.4;      // of the string's length: at a turn back the hair is in the air below it
-constexpr double kLeansOver = 0.9;   // of it: the hand begins to lean over to the other side
-constexpr double kTurnsOnly = 0.6, kTurnsBack = 0.3;  // of it: least length in a turn that lifts no hair, and all of it
-
-/// Whether the hand lifts a brush where it turns back and sets it down to the other side: a wide ferrule. Hair that is
-/// pushed before the hand lies on ahead of it for centimetres, then falls along its row. The ink of that place is
-/// there. Along a stencil hair is pushed onto it, so that the ink reaches its edge.
+/// Whether the hand lifts a brush where a trace turns back. Along a stencil hair is pushed onto it, so that the ink
+/// reaches its edge.
 bool is_lifted_at_turns(const StrokeSamples& trace, const HolderOptions& options) {
-    return trace.stencil.empty() && (options.across || options.turned || options.blade_landing > 0);
+    return trace.stencil.empty() && is_lifted_at_turns(options);
 }
 
 constexpr double kOtherSide = 0.5;  // sine of the path's turn to the broad side from which on hair lies on that side
@@ -385,36 +381,11 @@ bool is_dot(std::span<const StrokeSample> samples, const HolderOptions& options)
     return trace_direction(samples, options) == Vec2(0);
 }
 
-/// Where the hand is in a turn.
-struct Turning {
-    Vec2 towards{
-        0};  ///< from the end of a string of length `tip_lag_turn` to it, over that length; a unit vector ahead
-    double back = 0;  ///< 0–1: how much the path turns back there, and a wide brush is lifted
-};
-
-/// Turning at each sample. A path that turns by up to 106° keeps the hair down, one that turns by 145° or more lifts
-/// it: the string becomes as short as the cosine of half the turn. `ahead`: direction in which the trace sets out.
+/// `ahead`: direction in which the trace sets out.
 std::vector<Turning> turnings_of(const StrokeSamples& trace, const HolderOptions& options, const Vec2& ahead) {
-    const std::span<const StrokeSample> samples = trace.samples;
-    std::vector<Turning> out;
-    const double string = options.tip_lag_turn;
-    Vec2 before(samples.front().position), dragged = before - string * ahead;
-    for (const StrokeSample& s : samples) {
-        const Vec2 p(s.position);
-        dragged = drag_string(dragged, before, p, string);
-        before = p;
-        out.push_back({.towards = (p - dragged) / string});
-    }
-    if (options.tip_lag.empty() || !is_lifted_at_turns(trace, options) || is_dot(samples, options)) return out;
-    for (std::size_t i = 0; i < out.size(); ++i) {
-        double least = 1;
-        std::size_t end = i;
-        for (; end < out.size() && glm::length(out[end].towards) < 1 - 1e-9; ++end)
-            least = std::min(least, glm::length(out[end].towards));
-        const double back = smooth_step((kTurnsOnly - least) / (kTurnsOnly - kTurnsBack));
-        for (; i < end; ++i) out[i].back = back;
-    }
-    return out;
+    const bool lifted =
+        !options.tip_lag.empty() && is_lifted_at_turns(trace, options) && !is_dot(trace.samples, options);
+    return find_turnings(trace.samples, options.tip_lag_turn, ahead, lifted);
 }
 
 /// Lifts hair that bends across its broad side only where it comes over from one side to the other, in a turn of the
@@ -469,11 +440,11 @@ StrokeSamples lean_holder(StrokeSamples trace, const HolderOptions& options) {
         dragged = drag_string(dragged, before, p, string);
         before = p;
         // Hair that is lifted is set down leaning to its other side.
-        const auto& [over, back] = turning[i];
-        const double taut = glm::length(over);
-        if (back >= 1 && taut < kLifted) dragged = p - string * over;
-        const double part = back * smooth_step((kLeansOver - taut) / (kLeansOver - kLifted));
-        s.tilt = lean_of_make(options, s.roll, glm::mix((p - dragged) / string, over, part));
+        const Turning& turn = turning[i];
+        const double taut = glm::length(turn.towards);
+        if (turn.lift.back >= 1 && taut < turn.lift.air) dragged = p - string * turn.towards;
+        s.tilt =
+            lean_of_make(options, s.roll, glm::mix((p - dragged) / string, turn.towards, turn.lift.leans_over(taut)));
     }
     return trace;
 }
@@ -526,14 +497,14 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
         StrokeSample& s = trace.samples[i];
         const Vec2 p(s.position);
-        const auto& [string, back] = turning[i];
+        const auto& [string, lift] = turning[i];
         const double taut = glm::length(string), gone = glm::distance(p, before);
         Vec2 towards = string;
         since_turn += gone;
-        if (back > 0 && taut < 1 - 1e-9) {
-            s.pressure *= std::lerp(1.0, smooth_step((taut - kLifted) / (1 - kLifted)), back);
-            towards = glm::mix(string, taut > 1e-9 ? string / taut : Vec2{0}, back);
-            if (taut < kLifted) since_turn = 0, over = back;
+        if (lift.back > 0 && taut < 1 - 1e-9) {
+            s.pressure *= lift.pressed(taut);
+            towards = glm::mix(string, taut > 1e-9 ? string / taut : Vec2{0}, lift.back);
+            if (taut < lift.air) since_turn = 0, over = lift.back;
         }
         if (since_turn < turn_leans && !(options.lean > kLean))
             s.tilt += over * kLean * (1 - smooth_step(since_turn / turn_leans)) * towards;

@@ -81,6 +81,9 @@ class TiltedTipLag {
 /// Returns the cache of the user's measured tip lags: `tuft/tip_lags` in $XDG_CACHE_HOME or ~/.cache, 1 MiB.
 DiskCache shared_tip_lag_cache();
 
+/// Returns the length of a table at a depth, metres: linear between its rows, and down to 0 at depth 0.
+double tip_lag_length(std::span<const TipLag> table, double depth);
+
 /// Returns the tip lag at one point of a path, metres to the right and down. `tilt` and `roll`: radians, as in
 /// `SurfaceSample`; `ahead`: direction of the path in the same axes, up to 1 long. With `options.across` it is the tip
 /// lag of the part of `ahead` that is across the broad side.
@@ -133,7 +136,7 @@ StrokeSamples add_turn_samples(const StrokeSamples& trace, const HolderOptions& 
 /// ferrule across its broad side, of a blade along it. A sponge is pressed straight down. Then its middle lies where
 /// the trace was (`options.dot_place`), whichever way the surface leans. Pressed down plumb the hair would fall to any
 /// side. Where the path reverses, the tip lag passes through zero. A wide ferrule is lifted there and set down to its
-/// other side, with the ink up to the place where the path turns; a turn by up to 106° or along a stencil keeps it
+/// other side, with the ink up to the place where the path turns (turn_back.h); along a stencil it is kept
 /// down. A trace that begins pressed gets samples before its first one, at the same place and earlier in time, whose
 /// pressure rises to the first; the holder moves at `kSetDownPace` times the trace's speed, so that the tip touches
 /// first and trails. It leans ahead by 0.12 rad more, which fades over 4 `tip_lag_turn`; not where the lean of its make

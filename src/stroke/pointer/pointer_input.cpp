@@ -41,6 +41,11 @@ constexpr double kLightly = 0.2, kOverAnEdge = 0.08;
 constexpr double kSlowestCatchUp = 0.02, kCatchUpSpacing = 2.5e-4;  // m/s; metres between poses
 constexpr double kAhead = 0.5;  // of the radius that a holder levels: how far ahead the surface is looked at
 
+/// Half of the tip lag across the broad side, metres: a flat trails half as far on its edge.
+double half_lag(const HolderOptions& holder, double pressure) {
+    return (holder.turned ? 1 : 0.5) * tip_lag_length(holder.tip_lag, pressure * holder.working_depth);
+}
+
 /// `path` projected onto the plane of the levelled surface: by the part `start` (0–1) along the line of sight, else
 /// along the normal. A stroke that begins on a lip goes far along the surface's normal before it is on the wall. Its
 /// direction is that of the wall. A stroke that ends on a lip retains its direction.
@@ -98,12 +103,17 @@ brush::Pose PointerInput::pose_at(const Aim& aim, const Vec3& point, const Vec3&
         const Vec3 d = v - glm::dot(v, normal) * normal;
         return glm::length(d) > 1e-6 ? glm::normalize(d) : Vec3(0);
     };
-    const double tipped = std::max(0.0, kTips - glm::length(leant)) *
-                          (1 - smooth_step(motion_.gone / (kTipTurns * holder_.tip_lag_turn)));
-    const Vec3 up = glm::normalize(normal + std::tan(tilt.x) * along(aim.view_right) +
-                                   std::tan(tilt.y) * along(aim.view_up) + tipped * dragged_.string);
-    const double height = holder_.tuft_length + (pressure > 0 ? -pressure * holder_.working_depth : holder_.hover);
-    return {.position = point + ahead_of(aim, normal, pressure) + height * up,
+    const auto tipped_after = [&](double gone) {
+        return std::max(0.0, kTips - glm::length(leant)) * (1 - smooth_step(gone / (kTipTurns * holder_.tip_lag_turn)));
+    };
+    const Vec3 up =
+        glm::normalize(normal + std::tan(tilt.x) * along(aim.view_right) + std::tan(tilt.y) * along(aim.view_up) +
+                       tipped_after(motion_.gone) * dragged_.string +
+                       turns_.back.turned_back() * tipped_after(turns_.back.since_turn()) * trails(aim).string);
+    const double down = pressed(aim, pressure), carried = turns_.back.lift().carried(glm::length(trails(aim).string));
+    const double height =
+        holder_.tuft_length + (pressure > 0 ? carried * holder_.hover - down * holder_.working_depth : holder_.hover);
+    return {.position = point + ahead_of(aim, normal, down) + height * up,
             .rotation = rotation_at(aim, normal, up),
             .time = time};
 }
@@ -112,9 +122,16 @@ brush::Pose PointerInput::pose_at(const Aim& aim, const Vec3& point, const Vec3&
 Vec2 PointerInput::lean_of_make(const Aim& aim, const Vec3& normal) const {
     if (!(holder_.lean > 0) || aim.tilt || settings_.tilt != Vec2(0)) return Vec2(0);
     const Axes axes = axes_across(normal, aim.view_right, -aim.view_up);
-    const Vec2 ahead{glm::dot(leant_.string, axes.right), glm::dot(leant_.string, axes.down)};
+    const Vec3& string = trails(aim).string;
+    const Vec3 to = glm::mix(leant_.string, string, turns_.back.lift().leans_over(glm::length(string)));
+    const Vec2 ahead{glm::dot(to, axes.right), glm::dot(to, axes.down)};
     const Vec2 lean = stroke::lean_of_make(holder_, roll_at(aim), ahead);
     return {lean.x, -lean.y};
+}
+
+// What is left of a pressure where the path turns back.
+double PointerInput::pressed(const Aim& aim, double pressure) const {
+    return pressure * turns_.back.lift().pressed(glm::length(trails(aim).string));
 }
 
 // Of the ferrule, on the surface: where a make leans that is set down without a direction.
@@ -172,7 +189,8 @@ Vec3 PointerInput::ahead_of(const Aim& aim, const Vec3& normal, double pressure)
     const Vec2 tilt = settings_.tilt + lean_of_make(aim, normal);
     const double roll =
         turns_.followed ? turns_.followed->turn() + std::atan2(-ahead.y, ahead.x) : roll_of_ferrule(aim);
-    const Vec2 lag = taut * tip_lag_at(holder_, pressure, {tilt.x, -tilt.y}, roll, glm::normalize(ahead));
+    const Vec2 lag = std::lerp(taut, 1.0, turns_.back.lift().back) *
+                     tip_lag_at(holder_, pressure, {tilt.x, -tilt.y}, roll, glm::normalize(ahead));
     const double spread =
         pressure * motion_.spread * (1 - smooth_step(motion_.gone / (kSpreadGone * holder_.tuft_length)));
     return lag.x * axes.right + lag.y * axes.down + spread * dragged_.string;
@@ -186,8 +204,19 @@ void PointerInput::drag(const Aim& aim) {
         dragged.position = point_.position - offset;
         dragged.string = offset / reach;
     };
-    if (is_clean(aim)) follow(dragged_, holder_.tip_lag_turn);
-    follow(leant_, lean_string(holder_));
+    const double lean = lean_string(holder_);
+    if (is_clean(aim))
+        follow(dragged_, holder_.tip_lag_turn);
+    else if (is_lifted_at_turns(holder_))
+        follow(trailing_, std::max(holder_.tip_lag_turn, half_lag(holder_, steadying_.press.pressure)));
+    follow(leant_, lean);
+    if (!is_lifted_at_turns(holder_)) return;
+    const DraggedPoint& dragged = trails(aim);
+    turns_.back.follow(point_.position, dragged.string, is_clean(aim) ? kLiftedTurns : kLiftedPenTurns);
+    // Hair that is lifted is set down leaning to its other side.
+    const TurnLift& lift = turns_.back.lift();
+    if (lift.back >= 1 && glm::length(dragged.string) < lift.air)
+        leant_ = {point_.position - lean * dragged.string, dragged.string};
 }
 
 double PointerInput::goal_pressure(const Aim& aim) const {
@@ -220,6 +249,8 @@ void PointerInput::pen_down(const Aim& aim, const AimedSurface& hit, const Vec3&
     turns_.followed.reset();
     turns_.blade.reset();
     dragged_ = {point_.position - holder_.tip_lag_turn * towards, towards};
+    trailing_ = {point_.position, Vec3(0)};
+    turns_.back = {};
     turn_holder(aim, Vec3(0));
     const Vec3 leans = towards != Vec3(0) ? towards : across(aim);
     leant_ = {point_.position - lean_string(holder_) * leans, leans};

@@ -9,6 +9,7 @@
 #include "stroke/gesture/roll.h"
 #include "stroke/placement/placement.h"
 #include "stroke/placement/tip_lag.h"
+#include "stroke/placement/turn_back.h"
 #include "stroke/pointer/aim.h"
 #include "stroke/pointer/pointer_settings.h"
 
@@ -48,6 +49,10 @@ struct StrokeStep {
 /// (`tip_lag_at`), in the direction of a point dragged behind it (stroke/placement/tip_lag.h). At the end the
 /// hand decelerates evenly to the cursor's last point and lifts there; after a fast stroke it lifts while moving. Pens
 /// need none of this: their pressure shapes the ends.
+///
+/// Where the path turns back a wide ferrule is lifted and set down to its other side, as of recorded samples
+/// (stroke/placement/turn_back.h). Nobody knows what the hand does next: it is taken to go on straight. A pen, which
+/// does not lead its ink, lifts the hair as it comes back over half of its tip lag, and sets it down over its end.
 ///
 /// A holder that neither a pen nor the settings lean, leans as its make is held (`lean_of_make`).
 class PointerInput {
@@ -97,6 +102,7 @@ class PointerInput {
         RollFollower follower;                 ///< with `roll_follow`
         std::optional<BladeRoll> blade;        ///< of a clean stroke of a blade
         std::optional<FollowedTurn> followed;  ///< of a brush whose tip lag differs by turn
+        TurnFollower back;                     ///< of a brush that is lifted where its path turns back
     };
     struct Side {
         std::optional<bool> on_back;  ///< of the surface, where it was set down
@@ -108,6 +114,8 @@ class PointerInput {
     Quat rotation_at(const Aim& aim, const Vec3& normal, const Vec3& up) const;
     double roll_at(const Aim& aim) const;
     double roll_of_ferrule(const Aim& aim) const;
+    const DraggedPoint& trails(const Aim& aim) const { return is_clean(aim) ? dragged_ : trailing_; }
+    double pressed(const Aim& aim, double pressure) const;
     Vec3 across(const Aim& aim) const;
     Vec2 lean_of_make(const Aim& aim, const Vec3& normal) const;
     void turn_holder(const Aim& aim, const Vec3& motion);
@@ -138,7 +146,8 @@ class PointerInput {
     Side side_;
     Aim aim_;                       ///< the last one
     std::vector<Waiting> waiting_;  ///< of a clean stroke, until its direction is known
-    DraggedPoint dragged_;          ///< on a string of `tip_lag_turn`: where the tip lag points
+    DraggedPoint dragged_;          ///< on a string of `tip_lag_turn`: where the tip lag points; of a clean stroke
+    DraggedPoint trailing_;         ///< on one of half the tip lag, of a pen that is lifted where it turns back
     DraggedPoint leant_;            ///< on one of `lean_string`: where the make leans
     Turns turns_;
     Place goal_, point_;  ///< of the cursor; of the smoothed or dragged point
