@@ -53,6 +53,7 @@ HolderOptions holder_options(const brush::Preset& preset) {
             .blade_landing = preset.slant > 0 ? 0.4 * preset.length : 0,
             .lean = preset.lean,
             .across = is_bent_across(preset),
+            .foam = brush::is_foam(preset),
             .turned = has_lag_by_turn(preset)};
 }
 

@@ -106,6 +106,7 @@ struct HolderOptions {
     double blade_landing = 0;
     double lean = 0;      ///< radians, `brush::Preset::lean`
     bool across = false;  ///< `is_bent_across`: lean and tip lag are across the broad side; false: along the path
+    bool foam = false;    ///< a sponge: a dot is pressed straight down
     bool turned = false;  ///< `has_lag_by_turn`: the tip lag differs on the edge and across the broad side
     std::shared_ptr<Drapes> drapes = {};  ///< lines that strokes of one placement share; empty: each walks its own
 };

@@ -342,14 +342,11 @@ double angle_of(const Vec2& ahead) {
     return std::atan2(-ahead.y, ahead.x);
 }
 
-constexpr double kLeastTrail = 0.02;  // of the tuft's length: what trails less is pressed straight down
-
 /// Direction of a hand that sets a dot: towards the side that the holder leans to; upright, of a wide ferrule y, of a
 /// round one to the right and down, as a right hand goes; of a blade, which is led along its line, x or −x. Zero for a
-/// sponge, which does not trail.
+/// sponge, whose pores a hand that goes on would smear.
 Vec2 dot_direction(const StrokeSample& first, const HolderOptions& options) {
-    const double trails = tip_lag_length(options.tip_lag, options.working_depth);
-    if (!(trails > kLeastTrail * options.tuft_length)) return Vec2{0};
+    if (options.foam) return Vec2{0};
     if (options.blade_landing > 0) {
         const Vec2 along{std::cos(first.roll), -std::sin(first.roll)};
         return glm::dot(first.tilt, along) < 0 ? -along : along;
