@@ -278,6 +278,15 @@ TEST(ForeignFormats, AnX3dHasItsSetsStripsFansAndUnit) {
     expect_sets("wrl/sets.x3dv");  // the same in the classic encoding, with a prototype that is left out
 }
 
+TEST(ForeignFormats, AnX3dOfNothingButWhatIsNotReadSaysSo) {
+    const Folder folder;
+    EXPECT_THAT(
+        fault_of(folder.write("box.x3d", "<X3D><Scene><Shape><Box/></Shape><Shape><Cone/></Shape></Scene></X3D>")),
+        HasSubstr("of <Box>, <Cone> none are"));
+    EXPECT_THAT(fault_of(folder.write("ball.wrl", "#VRML V2.0 utf8\nShape { geometry Sphere { radius 2 } }\n")),
+                HasSubstr("of <Sphere> none are"));
+}
+
 TEST(ForeignFormats, VrmlIsReadInItsSecondVersionAndRefusedWithTheLine) {
     const Folder folder;
     const std::string shape =

@@ -77,7 +77,8 @@ PaintStroke written(SurfaceMapping mapping) {
     return s;
 }
 
-StrokeFit fit_on(const mesh::TriangleMesh& revised, const PaintStroke& stroke, bool with_motion = false) {
+template <class Content>
+StrokeFit fit_on(const mesh::TriangleMesh& revised, const Content& stroke, bool with_motion = false) {
     const Model former = sheet({}, kSmall);
     const mesh::SurfaceQuery query(revised);
     const ModelChange change = with_motion ? find_change(*former.query, query) : ModelChange{};
@@ -148,6 +149,40 @@ TEST(Fit, AFlatStrokeReportsHowFarItsPlacementMoved) {
         EXPECT_NEAR(*fit.slid, 20e-3, 1e-6);
         EXPECT_EQ(mismatch_reason(fit).text(), "lies 20.0 mm from its place on the model");
     }
+}
+
+/// A square of 20 mm in the middle of the sheet.
+Fill square(SurfaceMapping mapping) {
+    FlatArea area;
+    area.rings = {{{-0.01, -0.01}, {0.01, -0.01}, {0.01, 0.01}, {-0.01, 0.01}}};
+    area.placement = written(mapping).trace.placement;
+    area.stops = {{.ink = "carbon"}};
+    return fill_of_area(area);
+}
+
+// As strokes are: areas of drawings were left out, and one that went to another model altogether was no mismatch.
+TEST(Fit, AnAreaOfADrawingIsComparedAlongItsEdge) {
+    for (const SurfaceMapping mapping : {SurfaceMapping::wrap, SurfaceMapping::drape, SurfaceMapping::project}) {
+        const StrokeFit same = fit_on(*sheet({}, kSmall).mesh, square(mapping), true);
+        EXPECT_TRUE(same.area);
+        EXPECT_TRUE(mismatch_reason(same).empty()) << mismatch_reason(same).text();
+        EXPECT_NEAR(same.length, 0.08, 1e-6);
+        EXPECT_EQ(same.moved_most, 0);
+        EXPECT_EQ(same.missing(), 0);
+        EXPECT_TRUE(mismatch_reason(fit_on(remeshed(*sheet({}, kSmall).mesh), square(mapping))).empty());
+        const StrokeFit lower = fit_on(*sheet(make_frame({0, 0, -20e-3}, {0, 0, 1}), kSmall).mesh, square(mapping));
+        const std::vector<StrokeMismatch> found = find_mismatches({}, {lower});
+        ASSERT_EQ(found.size(), 1u);
+        EXPECT_TRUE(found[0].area);
+        EXPECT_EQ(found[0].reason.text(), "lies 20.0 mm from where it lay");
+        const Model aside = sheet(make_frame({0, 20e-3, 0}, {0, 0, 1}), kSmall);
+        const Message reason = mismatch_reason(fit_on(*aside.mesh, square(mapping), true));
+        EXPECT_TRUE(reason.text().starts_with("lies 20.0 mm from its place on the model")) << reason.text();
+    }
+    // A hole of 12 mm about the middle of an edge of 20 mm; triangles of 3 mm make it ragged.
+    const StrokeFit hole =
+        fit_on(with_hole(*sheet({}, kSmall).mesh, Vec3(0.01, 0, 0), 6e-3), square(SurfaceMapping::project));
+    EXPECT_NEAR(hole.missing(), 12.0 / 80, 0.06);
 }
 
 // A hole of 10 mm across the middle of 30 mm; triangles of 3 mm make it ragged.

@@ -37,6 +37,7 @@ int run(const Decimate& a) {
         throw UsageError("--output is the model itself: give the working copy another name");
     if (a.triangles == 0 && !(a.error_mm > 0)) throw UsageError("say how far: --triangles N, --error MM or both");
     Console console(a.common.quiet);
+    tell_left_aside(a.model, a, console);
     const auto [model, frame] = load_bare(a.model, a, console);
     const mesh::TriangleMesh& full = *model.mesh;
     mesh::PolygonSoup soup = mesh::decimate(full, {.n_triangles = a.triangles, .error = a.error_mm * kMillimetre});

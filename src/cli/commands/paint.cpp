@@ -398,6 +398,7 @@ int paint(const Paint& a, const StrokeSource& source) {
     Surface surface = a.surface;
     if (const double texel = a.drawing.auto_texel ? texel_for_detail(strokes, a) : 0; texel > 0)
         surface.texel_size_mm = texel / kMillimetre;
+    if (!before) tell_left_aside(a.model, surface, console);
     Loaded loaded = before ? Loaded{std::move(before->model), before->frame} : load_model(a.model, surface, console);
     stroke::Model model = std::move(loaded.model);
     outputs.frame = loaded.frame;

@@ -133,6 +133,7 @@ stroke::Model replay_model(const Replay& a, OpenProject& project, Console& conso
     surface.up = frame.y_up ? "y" : "z";
     if (surface.pages == 0) surface.pages = project.model.atlas.pages;
     if (!a.model.empty()) {
+        tell_left_aside(a.model, a.surface, console);
         if (surface.atlas_size == 0 && surface.texel_size_mm == 0) surface.atlas_size = project.model.atlas.page_size();
         return load_model(a.model, surface, console).model;
     }
@@ -272,6 +273,7 @@ int run(const Render& a) {
         show_layers(*painting, a.view.layers);
         apply_recolouring(project->file, *painting, a.recolouring, console);
     } else {
+        tell_left_aside(a.file, a, console);
         bare = load_bare(a.file, a, console).model;
         if (mesh::has_colours(*bare.mesh) && a.material.empty()) {
             stroke::ModelOptions options;

@@ -82,16 +82,17 @@ std::vector<SurfacePath> ink_of(const stroke::JournalEntry& entry, const mesh::S
         paths.back().points.push_back(p);
         paths.back().normals.push_back(n);
     };
-    const stroke::PaintStroke& stroke = entry.get<stroke::PaintStroke>();
-    if (stroke.trace.flat) {
-        for (const stroke::SurfaceSample& s :
-             stroke::map_to_surface(surface, stroke::steady(stroke.trace, stroke.settings)).samples)
+    const auto add_flat = [&](const stroke::StrokeSamples& trace) {
+        for (const stroke::SurfaceSample& s : stroke::map_to_surface(surface, trace).samples)
             if (s.on_surface && s.pressure > 0)
                 add(s.position, s.normal);
             else if (!paths.back().points.empty())
                 paths.emplace_back();
         return paths;
-    }
+    };
+    if (const stroke::Fill* fill = entry.as<stroke::Fill>()) return add_flat(stroke::ring_samples(fill->area.value()));
+    const stroke::PaintStroke& stroke = entry.get<stroke::PaintStroke>();
+    if (stroke.trace.flat) return add_flat(stroke::steady(stroke.trace, stroke.settings));
     for (const brush::Pose& pose : stroke::spatial_poses(stroke.trace))
         if (const auto hit = surface.ray(pose.position, pose.axis(), 0, length))
             add(hit->position, hit->normal);
@@ -193,7 +194,8 @@ Fit find_fit(const Replay& a, const RevisedStrokes& strokes, stroke::Document& p
 
 void note_fit(const Replay& a, const RevisedStrokes& strokes, const Fit& fit, Console& console) {
     for (const stroke::StrokeMismatch& m : fit.mismatches)
-        console.note(fmt::format("warning: stroke {} no longer fits: {}", m.stroke, m.reason.text()));
+        console.note(
+            fmt::format("warning: {} {} no longer fits: {}", m.area ? "area" : "stroke", m.stroke, m.reason.text()));
     for (const Message& note : strokes.notes) console.note("warning: " + note.text());
     const stroke::ModelChange& change = strokes.change;
     if (change.whole)
@@ -240,8 +242,9 @@ void write_revision_picture(const Replay& arguments, const RevisedStrokes& strok
     for (const stroke::JournalEntry& entry : strokes.followed) {
         const bool fits =
             std::ranges::none_of(fit.mismatches, [&](const stroke::StrokeMismatch& m) { return m.stroke == entry.id; });
-        if (fits || !entry.as<stroke::PaintStroke>()) continue;
-        const double length = painting.materials().brush(stroke::brush_of(entry)).length;
+        if (fits) continue;
+        const bool is_stroke = entry.as<stroke::PaintStroke>() != nullptr;
+        const double length = is_stroke ? painting.materials().brush(stroke::brush_of(entry)).length : 0;
         const std::vector<SurfacePath> paths = ink_of(entry, *model.query, length);
         for (const SurfacePath& line : paths) overlay.draw(line, 2, red);
         if (!paths[0].points.empty())

@@ -82,7 +82,6 @@ Read read_file(const fs::path& path, const FileReading& how, mesh::RepairOptions
         if (guess.unit != read.frame.unit) console.note(guess.sentence + " (see --unit)");
         read.frame.unit = guess.unit;
     }
-    tell_left_aside(path, how, console);
     repair.metres_per_unit = fixed.value_or(metres_per(read.frame.unit).value_or(kMillimetre));
     repair.y_up = read.frame.y_up && !io::has_fixed_up_axis(path);  // the reader has turned it
     if (!how.sides.empty()) repair.sides = mesh::open_sides_of(how.sides);

@@ -122,6 +122,11 @@ class Reader {
         visit(root.child("Scene"), frame, "", 0);
         for (const std::string& kind : skipped_)
             out_.warnings.push_back(Message("<{}> is not read and was skipped", kind));
+        if (out_.counts.empty() && !skipped_.empty()) {
+            std::string kinds;
+            for (const std::string& kind : skipped_) kinds += (kinds.empty() ? "<" : ", <") + kind + ">";
+            throw Error(file_, Message("has no faces that are read: of {} none are", kinds));
+        }
         if (!out_.colours.empty()) out_.colours.resize(out_.points.size(), {255, 255, 255, 255});
         return std::move(out_);
     }

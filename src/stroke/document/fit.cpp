@@ -19,14 +19,21 @@ constexpr double kMost = 0.5;          // of the path: then no depth is worth te
 constexpr double kDepthPart = 0.5;     // of the depth, that it may change by
 constexpr double kLeastChange = 2e-4;  // metres of depth that nobody sees
 constexpr double kLeastMove = 1e-3,
-                 kMovePart = 0.01;  // metres, and part of the path, that a place may move by
-constexpr double kStretch = 1.25;   // times as long, or short
-constexpr double kPiece = 5e-3;     // metres of path that are measured together
-constexpr double kTooSmall = 0.25;  // times as large as the former model: a unit that was mistaken is less
-constexpr double kTouch = 1e-4;     // metres that a single touch counts as
+                 kMovePart = 0.01;   // metres, and part of the path, that a place may move by
+constexpr double kStretch = 1.25;    // times as long, or short
+constexpr double kPiece = 5e-3;      // metres of path that are measured together
+constexpr double kTooSmall = 0.25;   // times as large as the former model: a unit that was mistaken is less
+constexpr double kTouch = 1e-4;      // metres that a single touch counts as
+constexpr double kRingStep = 2e-3;   // metres between points of a ring
+constexpr double kRingPoints = 200;  // of an area, about; longer rings have them farther apart
 
-bool is_compared(const JournalEntry& entry) {
+bool is_painted(const JournalEntry& entry) {
     return entry.as<PaintStroke>() && !entry.hidden && !on_palette(entry);
+}
+
+const FlatArea* area_of(const JournalEntry& entry) {
+    const Fill* fill = entry.as<Fill>();
+    return fill && fill->area && !entry.hidden && !on_palette(entry) ? &*fill->area : nullptr;
 }
 
 std::string tenths(double value) {
@@ -126,13 +133,15 @@ StrokeFit fit_in_space(const ComparedStroke& stroke, const Revision& r) {
     return fit;
 }
 
+StrokeSamples flat_trace(const JournalEntry& entry) {
+    if (const FlatArea* area = area_of(entry)) return ring_samples(*area);
+    const PaintStroke& s = *entry.as<PaintStroke>();
+    return steady(s.trace, s.settings);
+}
+
 StrokeFit fit_flat(const ComparedStroke& stroke, const Revision& r) {
-    const auto steadied = [](const JournalEntry& entry) {
-        const PaintStroke& s = *entry.as<PaintStroke>();
-        return steady(s.trace, s.settings);
-    };
-    StrokeFit fit{.stroke = stroke.entry.id, .flat = true};
-    const StrokeSamples trace = steadied(stroke.entry), followed = steadied(stroke.followed);
+    StrokeFit fit{.stroke = stroke.entry.id, .area = area_of(stroke.entry) != nullptr, .flat = true};
+    const StrokeSamples trace = flat_trace(stroke.entry), followed = flat_trace(stroke.followed);
     SurfaceTrace was = map_to_surface(r.former, trace), now = map_to_surface(r.revised, followed);
     leave_other_sheets(r.former, trace, was);
     leave_other_sheets(r.revised, followed, now);
@@ -152,6 +161,7 @@ StrokeFit fit_flat(const ComparedStroke& stroke, const Revision& r) {
 
 /// Whether a stroke lies elsewhere than before.
 bool is_followed(const JournalEntry& entry, const JournalEntry& followed) {
+    if (const FlatArea* area = area_of(entry)) return !(area->placement == area_of(followed)->placement);
     const StrokeSamples &a = samples_of(entry), &b = samples_of(followed);
     if (a.flat) return !(a.placement == b.placement);
     return !a.samples.empty() && a.samples[0].position != b.samples[0].position;
@@ -161,7 +171,7 @@ bool is_followed(const JournalEntry& entry, const JournalEntry& followed) {
 std::optional<std::pair<std::string, double>> longer_than(double most, const std::vector<JournalEntry>& entries,
                                                           const std::function<double(const std::string&)>& length_of) {
     for (const JournalEntry& entry : entries) {
-        if (!is_compared(entry)) continue;
+        if (!is_painted(entry)) continue;
         if (const double length = length_of(brush_of(entry)); length > most) return {{brush_of(entry), length}};
     }
     return {};
@@ -171,7 +181,7 @@ std::optional<std::pair<std::string, double>> longer_than(double most, const std
 Box placed_bounds(const std::vector<JournalEntry>& entries) {
     Box bounds;
     for (const JournalEntry& entry : entries) {
-        if (!is_compared(entry) || !samples_of(entry).flat) continue;
+        if (!is_painted(entry) || !samples_of(entry).flat) continue;
         const Placement& p = samples_of(entry).placement;
         for (const StrokeSample& s : samples_of(entry).samples)
             bounds.add(p.origin + s.position.x * p.right + s.position.y * p.down);
@@ -206,19 +216,51 @@ Message size_fault(const std::vector<JournalEntry>& entries, const std::function
         millimetres(across), millimetres(drawing.diagonal()), longer->first, millimetres(longer->second));
 }
 
+StrokeSamples ring_samples(const FlatArea& area) {
+    StrokeSamples trace{.flat = true, .placement = area.placement};
+    double whole = 0;
+    for (const std::vector<Vec2>& ring : area.rings)
+        for (std::size_t i = 0; i < ring.size(); ++i) whole += glm::distance(ring[i], ring[(i + 1) % ring.size()]);
+    const double step = std::max(kRingStep, whole / kRingPoints);
+    double time = 0;
+    const auto add = [&](const Vec2& p, double pressure) {
+        trace.samples.push_back({.time = time++, .position = Vec3(p, 0), .pressure = pressure});
+    };
+    for (const std::vector<Vec2>& ring : area.rings) {
+        if (ring.empty()) continue;
+        add(ring[0], 0);
+        double left = step;  // to the next point
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const Vec2 a = ring[i], b = ring[(i + 1) % ring.size()];
+            const double length = glm::distance(a, b);
+            double at = 0;
+            for (; length - at >= left; left = step) add(a + (at += left) / length * (b - a), 1);
+            left -= length - at;
+        }
+        add(ring[0], 1);
+    }
+    return trace;
+}
+
 std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries, const std::vector<JournalEntry>& followed,
                                    const std::function<double(const std::string&)>& length_of,
                                    const Revision& revision) {
     std::vector<ComparedStroke> compared;
     for (std::size_t i = 0; i < entries.size(); ++i)  // here: presets are loaded one at a time
-        if (is_compared(entries[i])) compared.push_back({entries[i], followed[i], length_of(brush_of(entries[i])), {}});
+        if (is_painted(entries[i]))
+            compared.push_back({entries[i], followed[i], length_of(brush_of(entries[i])), {}});
+        else if (area_of(entries[i]))
+            compared.push_back({entries[i], followed[i], 0, {}});
     std::vector<StrokeFit> fits(compared.size());
     parallel_for(compared.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             ComparedStroke& stroke = compared[i];
-            const StrokeSamples& trace = samples_of(stroke.entry);
-            if (!revision.change.none()) stroke.motion = motion_of(trace, revision.change, revision.former);
-            fits[i] = trace.flat ? fit_flat(stroke, revision) : fit_in_space(stroke, revision);
+            const FlatArea* area = area_of(stroke.entry);
+            const bool flat = area || samples_of(stroke.entry).flat;
+            if (!revision.change.none())
+                stroke.motion =
+                    motion_of(area ? ring_samples(*area) : samples_of(stroke.entry), revision.change, revision.former);
+            fits[i] = flat ? fit_flat(stroke, revision) : fit_in_space(stroke, revision);
             fits[i].followed = is_followed(stroke.entry, stroke.followed);
         }
     });
@@ -264,6 +306,11 @@ std::vector<StrokeMismatch> find_mismatches(const std::vector<StrokeReport>& rep
             reason = Message("touches nothing, {} mm away", tenths(1e3 * report.nearest));
         if (!reason.empty()) found.push_back({report.stroke_id, std::move(reason)});
     }
+    for (const StrokeFit& fit : fits) {
+        if (!fit.area) continue;
+        if (Message reason = mismatch_reason(fit); !reason.empty())
+            found.push_back({fit.stroke, std::move(reason), true});
+    }
     return found;
 }
 
@@ -272,6 +319,7 @@ FitTotal total_of(const std::vector<StrokeFit>& fits, const std::vector<StrokeMi
     std::vector<double> moved, slid;
     double length = 0, missing = 0, stretched = 0;
     for (const StrokeFit& fit : fits) {
+        total.areas |= fit.area;
         if (!(fit.length > 0)) continue;
         moved.push_back(fit.moved);
         if (fit.slid) slid.push_back(*fit.slid);
@@ -290,8 +338,12 @@ Message describe(const FitTotal& t) {
     const Message on_model =
         t.slid ? Message(" and {} mm from their places on the model", tenths(1e3 * *t.slid)) : Message();
     return Message(
-        "{} of {} strokes no longer fit: they lie {} mm from where they lay ({} mm at most){}, {} % of their ink is "
-        "missing, {} % of it is stretched or squeezed by more than a quarter",
+        t.areas
+            ? "{} of {} strokes and areas no longer fit: they lie {} mm from where they lay ({} mm at most){}, {} % of "
+              "their ink is missing, {} % of it is stretched or squeezed by more than a quarter"
+            : "{} of {} strokes no longer fit: they lie {} mm from where they lay ({} mm at most){}, {} % of their ink "
+              "is "
+              "missing, {} % of it is stretched or squeezed by more than a quarter",
         t.mismatches, t.strokes, tenths(1e3 * t.moved), tenths(1e3 * t.moved_most), on_model,
         std::lround(100 * t.missing), std::lround(100 * t.stretched));
 }

@@ -16,11 +16,12 @@
 /// --model` and when the studio opens a project on a revised model.
 namespace tuft::stroke {
 
-/// How a stroke made on a former model lies on a revised one. Lengths in metres; path lengths are those of the ink's
-/// path on the former model. The ink of a sample is where a flat trace is mapped to, and where the axis of a holder in
-/// space meets the surface.
+/// How a stroke, or an area of a drawing, made on a former model lies on a revised one. Lengths in metres; path lengths
+/// are those of the ink's path on the former model, of an area along its rings. The ink of a sample is where a flat
+/// trace is mapped to, and where the axis of a holder in space meets the surface.
 struct StrokeFit {
-    std::uint64_t stroke = 0;
+    std::uint64_t stroke = 0;    ///< id of its entry
+    bool area = false;           ///< of a drawing
     bool reached = false;        ///< the former model was within a tuft's length of the ferrule's mouth somewhere
     double length = 0;           ///< length of the path
     double lost = 0;             ///< of it, where the revised model has no surface for the ink
@@ -64,11 +65,16 @@ struct Revision {
 /// Compares two models along strokes: the entries on the former one, and `followed`, what became of them
 /// (`follow_model`; the same entries where they stay), on the revised one. At each sample of a stroke in space, rays
 /// from the ferrule's mouth along its axis, one tuft length to both sides, find the surfaces; flat strokes are mapped
-/// onto both models. `length_of` returns the tuft length of a brush, metres. Hidden strokes and those on the palette
-/// are left out. Cost: two rays per sample, or two mappings. Precondition: as many followed as entries.
+/// onto both models, and so are the rings of areas (`ring_samples`). `length_of` returns the tuft length of a brush,
+/// metres. Hidden entries and those on the palette are left out. Cost: two rays per sample, or two mappings.
+/// Precondition: as many followed as entries.
 std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries, const std::vector<JournalEntry>& followed,
                                    const std::function<double(const std::string& brush)>& length_of,
                                    const Revision& revision);
+
+/// Returns the rings of an area as a flat trace, points at most 2 mm apart, farther where they are longer than 0.4 m.
+/// Pressure is 0 at the first point of each ring, else 1.
+StrokeSamples ring_samples(const FlatArea& area);
 
 /// Returns why a stroke no longer fits, as a sentence for people; empty where it fits. It does not fit if
 /// - more than 10 % of its path have no ink, or
@@ -78,22 +84,24 @@ std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries, con
 /// - more than 10 % of its path are longer or shorter by more than a quarter.
 Message mismatch_reason(const StrokeFit& fit);
 
-/// A stroke that does not fit a revised model.
+/// A stroke, or an area of a drawing, that does not fit a revised model.
 struct StrokeMismatch {
     std::uint64_t stroke = 0;  ///< id of its entry
     Message reason;            ///< for people
+    bool area = false;         ///< of a drawing
 };
-/// Returns the mismatches of a replay on the revised model, in the journal's order: strokes that touched nothing, and
-/// those with a `mismatch_reason`.
+/// Returns the mismatches of a replay on the revised model: strokes that touched nothing, and those with a
+/// `mismatch_reason`, then areas with one; both in the journal's order.
 std::vector<StrokeMismatch> find_mismatches(const std::vector<StrokeReport>& reports,
                                             const std::vector<StrokeFit>& fits);
 
-/// Fit of all strokes of a journal.
+/// Fit of all strokes and areas of a journal.
 struct FitTotal {
-    std::size_t strokes = 0, mismatches = 0;
-    double moved = 0, moved_most = 0;   ///< median over the strokes, and largest; metres
-    std::optional<double> slid;         ///< median over the strokes, metres
-    double missing = 0, stretched = 0;  ///< parts of the path of all strokes, 0–1
+    std::size_t strokes = 0, mismatches = 0;  ///< both with the areas
+    bool areas = false;                       ///< there are some
+    double moved = 0, moved_most = 0;         ///< median over the strokes, and largest; metres
+    std::optional<double> slid;               ///< median over the strokes, metres
+    double missing = 0, stretched = 0;        ///< parts of the path of all strokes, 0–1
 };
 FitTotal total_of(const std::vector<StrokeFit>& fits, const std::vector<StrokeMismatch>& mismatches);
 
