@@ -95,6 +95,9 @@ struct Wetting {
     float threshold = 0.1f;         ///< w_c: film units of water that do not flow
     float edge = 0.5f;              ///< 0–1: pinning of the rim of a wet spot, which darkens its edge as it dries
     float evaporation = 1.0f / 60;  ///< film units of water per second, however wet it is
+    /// Metres: thickness of still air, whose vapour spreads by diffusion, so that large wet places dry more slowly than
+    /// `evaporation`, which then is that of lines and dots of 2 mm. 0: the air moves.
+    float still_air = 0;
 };
 
 /// A substrate.

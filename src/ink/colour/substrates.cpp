@@ -14,7 +14,8 @@ Substrate parse_substrate(std::string_view text, const std::string& source) {
     in.only({"name",         "title",     "reflectance",    "roughness",         "metallic",
              "transmission", "capacity",  "interface",      "relief_um",         "relief_length_um",
              "absorbency",   "pores",     "pore_radius_nm", "contact_angle_deg", "retention",
-             "diffusion",    "threshold", "edge",           "evaporation",       "source"});
+             "diffusion",    "threshold", "edge",           "evaporation",       "still_air_mm",
+             "source"});
     Substrate s;
     const auto read = [&](float& field, std::string_view key, double lo, double hi, double unit = 1) {
         const double value = in.number(key, lo, hi, static_cast<double>(field) / unit);
@@ -40,6 +41,7 @@ Substrate parse_substrate(std::string_view text, const std::string& source) {
     read(w.threshold, "threshold", 0, 10);
     read(w.edge, "edge", 0, 1);
     read(w.evaporation, "evaporation", 0, 10);
+    read(w.still_air, "still_air_mm", 0, 1e5, 1e-3);
     return s;
 }
 
@@ -55,7 +57,8 @@ std::string substrate_toml(const Substrate& s) {
            "\npore_radius_nm = " + shortest_in(w.pore_radius, 1e-9) +
            "\ncontact_angle_deg = " + shortest_float(w.contact_angle) + "\nretention = " + shortest_float(w.retention) +
            "\ndiffusion = " + shortest_float(w.diffusion) + "\nthreshold = " + shortest_float(w.threshold) +
-           "\nedge = " + shortest_float(w.edge) + "\nevaporation = " + shortest_float(w.evaporation) + "\n";
+           "\nedge = " + shortest_float(w.edge) + "\nevaporation = " + shortest_float(w.evaporation) +
+           (w.still_air > 0 ? "\nstill_air_mm = " + shortest_in(w.still_air, 1e-3) : std::string()) + "\n";
 }
 
 Substrate load_substrate(std::string_view name) {

@@ -13,6 +13,7 @@
 #include "ink/film/film_step.h"
 #include "ink/film/film_worker.h"
 #include "ink/film/seepage.h"
+#include "ink/film/still_air.h"
 #include "ink/film/tension.h"
 #include "ink/film/tile/paste.h"
 #include "ink/texels/drying.h"
@@ -70,7 +71,7 @@ struct WetFilm::State : TileList {
     struct LevelSteps {
         bool in_work = false;         ///< the step in work is one of them
         double seconds = kLevelStep;  ///< of the next one
-        double least = kLevelStep;
+        double least = kLevelStep, most = kLongestLevelStep;
     };
 
     std::vector<std::uint8_t> reported;
@@ -85,6 +86,7 @@ struct WetFilm::State : TileList {
     std::vector<std::uint32_t> part_order;  ///< of `order` what a step in parts, or by tension, goes through
     Tension tension;
     Seepage seepage;
+    StillAir air;
     LevelSteps level_steps;
     bool seeps = false;  ///< the step in work is one through the pores
     std::mutex mutex;
@@ -180,6 +182,7 @@ struct WetFilm::State : TileList {
                 list[i].faces.diagonals = g->gd.get();
                 feel(canvas, list[i].slot);
                 tension.look_at(map, list[i].slot);
+                air.complete(map, list[i].slot);
                 find_planes(canvas, i);
             }
         });
@@ -248,7 +251,8 @@ struct WetFilm::State : TileList {
         give(tile.s, worker.spare[1]);
         std::array<std::uint8_t, kTexels> closing;
         ahead.fetch(kLines);
-        tile.outcome = local_step({tile.w->data(), tile.s->data(), closing}, work, g, step, seed);
+        const float* factors = step.drying.evaporation > 0 ? air.of(tile.slot, worker.drying) : nullptr;
+        tile.outcome = local_step({tile.w->data(), tile.s->data(), closing, factors}, work, g, step, seed);
         if (tile.outcome.closing) {
             if (!tile.closing) tile.closing = std::make_unique<std::array<std::uint8_t, kTexels>>();
             *tile.closing = closing;
@@ -446,7 +450,7 @@ struct WetFilm::State : TileList {
     /// Ripples level for `seconds`, in steps of `level_steps.seconds`, which grows while all is slow.
     void level(Canvas& canvas, const FilmParams& params, double seconds, const Step& last, FilmReport& report) {
         if (!tension.find(*this, relief)) {
-            level_steps.seconds = std::min(2 * level_steps.seconds, kLongestLevelStep);
+            level_steps.seconds = std::min(2 * level_steps.seconds, level_steps.most);
             return;
         }
         const Step rates = still(last);
@@ -461,7 +465,7 @@ struct WetFilm::State : TileList {
             level_steps.in_work = false;
             left = dt < left * (1 - 1e-9) ? left - dt : 0;
             if (solved.bends > kSlow || solved.change < kLittle)
-                level_steps.seconds = std::min(2 * level_steps.seconds, kLongestLevelStep);
+                level_steps.seconds = std::min(2 * level_steps.seconds, level_steps.most);
             else if (solved.bends < kFast && solved.change > kMuch)
                 level_steps.seconds =
                     std::max(0.5 * level_steps.seconds, solved.change > kVeryMuch
@@ -525,13 +529,14 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     s.forget_relief();
     s.tension.start(params, s.map);
     s.seepage.start(params);
+    s.air.start(params, s.map);
     s.set_unevenness(params.unevenness, params.pores.retention);  // fibres sieve
     s.begin(canvas);
     double beads = 0;  // seconds that they have not run yet
     bool running = glm::length(params.weight.down) > 0;
     // A long wait ends with what is level; how it became so needs not be followed at every moment.
-    s.level_steps.least = std::clamp(kPartOfWait * seconds, kLevelStep, kLeastOfLongWait);
-    s.level_steps.seconds = s.level_steps.least;
+    const double least = std::clamp(kPartOfWait * seconds, kLevelStep, kLeastOfLongWait);
+    s.level_steps.seconds = least;
     double rippled = params.ripples.unlevelled;  // seconds in which ripples have not levelled yet
     for (double left = seconds; left > 0 && !s.list.empty();) {
         if (progress && !progress("drying", 1 - left / seconds)) {
@@ -539,8 +544,15 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
             throw Cancelled();
         }
         if (s.sources.empty()) s.prepare(canvas);
-        StepChoice chosen = choose_step(params, s, s.map.texel_size, s.any_relief, running, left);
+        s.air.look(s, s.sources);
+        // What dries at the rims is all that moves in a long wait: slowly, where the air is full.
+        s.level_steps.least = least > kLevelStep ? least * s.air.slower() : least;
+        s.level_steps.most = kLongestLevelStep * s.air.slower();
+        s.level_steps.seconds = std::min(s.level_steps.seconds, s.level_steps.most);
+        StepChoice chosen = choose_step(params, s, {s.any_relief, running, s.air.slower()}, left);
         const double dt = chosen.dt;
+        s.air.slow_down(chosen.step);
+        s.air.pass(dt);
         left = dt < left * (1 - 1e-9) ? left - dt : 0;
         rippled += dt;
         const bool level = params.ripples.tension > 0 && params.ripples.level &&
@@ -565,8 +577,10 @@ FilmReport WetFilm::dry(Canvas& canvas, const FilmParams& params, const BeforeFn
                         const ProgressFn& progress) {
     FilmReport report;
     constexpr double kAtOnce = 60;
+    FilmParams now = params;
     for (double left = limit; left > 0 && canvas.wet(); left -= kAtOnce) {
-        const FilmReport part = advance(canvas, std::min(left, kAtOnce), params, before, progress);
+        const FilmReport part = advance(canvas, std::min(left, kAtOnce), now, before, progress);
+        now.drying.goes_on = true;
         report.steps += part.steps;
         report.tile_steps += part.tile_steps;
         report.evaporated += part.evaporated;

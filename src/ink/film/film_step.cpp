@@ -50,8 +50,9 @@ Step part_of(const Step& step, int parts, double stiffness) {
 
 }  // namespace
 
-StepChoice choose_step(const FilmParams& p, const TileList& tiles, double texel_size, bool on_relief, bool beads,
-                       double left) {
+StepChoice choose_step(const FilmParams& p, const TileList& tiles, const StepState& state, double left) {
+    const auto [on_relief, beads, slower] = state;
+    const double texel_size = tiles.map.texel_size;
     const double area = texel_size * texel_size;
     const double levelling = glm::length(p.weight.down) > 0 ? 0 : p.levelling;
     Deepest all, beside;
@@ -61,7 +62,7 @@ StepChoice choose_step(const FilmParams& p, const TileList& tiles, double texel_
     }
     const double stiffness = all.stiffness;
     StepChoice out;
-    double dt = beads ? kBeadStep : all.w > 0 ? kLongestStep : kLongestSoaked;
+    double dt = beads ? kBeadStep : (all.w > 0 ? kLongestStep : kLongestSoaked) * slower;
     const double flow = all.rate(p, levelling, area, on_relief);
     if (flow > 0) dt = std::min(dt, kFlowPart / flow);
     const double mixing = p.mixing / area * stiffness;

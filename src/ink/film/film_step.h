@@ -18,10 +18,14 @@ struct StepChoice {
     int parts = 0;
     Step part;  ///< flow and mixing only
 };
+/// What else bounds a step.
+struct StepState {
+    bool on_relief = false;  ///< any of the tiles has dry relief
+    bool beads = false;      ///< some beads run
+    double slower = 1;       ///< how many times as slowly it dries
+};
 /// Returns the longest stable step of the listed tiles, at most `left` seconds and at least
-/// `FilmParams::shortest_step`. `texel_size` in metres; `on_relief`: any of the tiles has dry relief; `beads`: some
-/// beads run.
-StepChoice choose_step(const FilmParams& p, const TileList& tiles, double texel_size, bool on_relief, bool beads,
-                       double left);
+/// `FilmParams::shortest_step`.
+StepChoice choose_step(const FilmParams& p, const TileList& tiles, const StepState& state, double left);
 
 }  // namespace tuft::ink::wet

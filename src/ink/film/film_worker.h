@@ -77,6 +77,7 @@ struct Worker {
     Ahead ahead;
     Crossing crossing;
     Spare spare;
+    Plane drying;  ///< factors of a tile
 };
 
 }  // namespace tuft::ink::wet

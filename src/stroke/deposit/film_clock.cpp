@@ -18,11 +18,13 @@ void FilmClock::step(bool ends) {
     if (!wet_.film) return;
     ink::FilmParams params = wet_.params;
     params.ripples.unlevelled = unlevelled_;
+    params.drying.goes_on = goes_on_;
     params.ripples.level = ends || unlevelled_ + behind_ >= kLevelEvery;
     wet_.film->advance(
         target_.canvas(), behind_, params, [this](std::uint32_t slot) { target_.snapshot(slot); }, progress_);
     unlevelled_ = params.ripples.level ? 0 : unlevelled_ + behind_;
     behind_ = 0;
+    goes_on_ = true;
 }
 
 }  // namespace tuft::stroke

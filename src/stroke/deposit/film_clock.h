@@ -35,6 +35,7 @@ class FilmClock {
     ProgressFn progress_;
     double behind_ = 0;      // seconds
     double unlevelled_ = 0;  // seconds in which ripples have not levelled yet
+    bool goes_on_ = false;   // the film was advanced before
 };
 
 }  // namespace tuft::stroke

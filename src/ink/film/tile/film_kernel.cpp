@@ -293,7 +293,7 @@ struct Settled {
 /// Texels' new liquid, drying. Beside charts there is no air; 0 / 0 there, thrown away or not, is no
 /// number, which this file's options forbid (AVX2 then lost other lanes).
 TUFT_CLONES Settled settle(float* __restrict w, float* __restrict s, const Work& o, const float* __restrict inverse,
-                           const float* __restrict noise, const Step& step) {
+                           const float* __restrict noise, const float* __restrict factor, const Step& step) {
     const float pores = step.pores;
     const float evaporation = step.drying.evaporation, rim = step.drying.rim;
     alignas(64) float most_w[kLanes] = {}, most_s[kLanes] = {}, air[kLanes] = {}, least[kLanes];
@@ -307,7 +307,7 @@ TUFT_CLONES Settled settle(float* __restrict w, float* __restrict s, const Work&
             const float over = positive(s1 - pores);  // by rounding
             s1 -= over;
             w1 += over;
-            const float all = evaporation + rim * o.rim_slope[i];
+            const float all = (evaporation + rim * o.rim_slope[i]) * factor[i];
             const float from_w = smaller(w1, all), from_s = smaller(s1, all - from_w);
             // What goes is what is less after it: sums are rounded.
             const float w2 = w1 - from_w, s2 = s1 - from_s;
@@ -445,6 +445,10 @@ void gather_field(Field& field, const std::array<const float*, 9>& planes) {
     gather_rows(field.data(), planes);
 }
 
+void rim_slopes(float* slope, const Field& total, const Geometry& g, float depth) {
+    slope_to_rims(slope, total.data(), g, depth);
+}
+
 bool fluxes(Work& work, const Geometry& g, const Step& step) {
     const float depth = step.drying.rim > 0 ? step.drying.rim_depth : 0, least = levels(work, step);
     const Least rims = least > 0 && least >= depth ? Least{} : find_rims(work, g, depth);
@@ -466,8 +470,14 @@ void pigment_step(float* p, const Work& work, const Geometry& g, bool seams, std
 }
 
 Outcome local_step(const LocalFilms& films, const Work& work, const Geometry& g, const Step& step, std::uint64_t seed) {
+    static const auto kAlike = [] {
+        Plane ones;
+        ones.fill(1);
+        return ones;
+    }();
     float *w = films.w, *s = films.s;
-    const Settled settled = settle(w, s, work, g.inverse.data(), dither(seed), step);
+    const Settled settled =
+        settle(w, s, work, g.inverse.data(), dither(seed), films.drying ? films.drying : kAlike.data(), step);
     Outcome out{.most_w = settled.most_w, .most_s = settled.most_s, .evaporated = settled.air};
     if (settled.least > 0) {
         out.sides = 15;

@@ -11,7 +11,9 @@ constexpr double kLeastMixing = 2e-10;            // m²/s
 constexpr double kStirring = 0.02;                // film units: mixing over mobility
 constexpr double kOfClouds = 1, kOfFibres = 1.3;  // of unevenness, on relief that is far higher than kFilmHeight
 constexpr double kFilmHeight = 10e-6;             // metres: relief over which flow is as uneven as half of that
-constexpr double kRimLength = 1e-3;               // metres: what the rim of a wet spot adds to its area, as for drying
+// Still air at 20 °C and half its humidity [HuLarson2002]: D (c_s − c_∞) / ρ, m²/s, for the rate that substrates have.
+constexpr double kVapour = 24.2e-6 * 17.3e-3 * 0.5 / 1000, kRateInStillAir = 1.0 / 60;
+constexpr double kRimLength = 1e-3;  // metres: what the rim of a wet spot adds to its area, as for drying
 
 /// Without a radius of its pores, `diffusion` is that of full pores.
 double suction_of(const Wetting& wetting, const FilmParams& p) {
@@ -42,6 +44,8 @@ FilmParams film_params(const Substrate& substrate, const Vec3& down) {
     p.pores.retention = static_cast<double>(wetting.retention);
     p.drying.evaporation = static_cast<double>(wetting.evaporation);
     p.drying.rim_evaporation = p.drying.evaporation * static_cast<double>(wetting.edge) * kRimLength;
+    p.drying.still_air = static_cast<double>(wetting.still_air);
+    p.drying.vapour = kVapour / kFilmUnit * (p.drying.evaporation / kRateInStillAir);
     p.drying.stain = p.pores.capacity / (p.pores.capacity + 2);
     if (wetting.pores > 0)
         p.unevenness = (kOfClouds + kOfFibres * p.pores.retention) * static_cast<double>(substrate.relief) /

@@ -30,6 +30,11 @@ struct FilmDrying {
     double rim_evaporation = 0;     ///< film units · m per second, additional, per metre of rim
     double rim_depth = 1;           ///< film units: rims are thinner than this
     double stain = 0;               ///< fraction of a drying film that soaks into bare substrate
+    /// D (c_s − c_∞) / ρ over a film unit, film · m/s: still air takes up 4 R of it from a spot of radius R
+    /// (still_air.h), which the rates share out.
+    double vapour = 0;
+    double still_air = 0;  ///< m: thickness of the still air over the surface; 0: it moves, and the rates hold anywhere
+    bool goes_on = false;  ///< this call follows the one before: what was found of the air then still holds
 };
 
 /// Levelling of ripples by surface tension.

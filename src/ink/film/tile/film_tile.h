@@ -161,6 +161,8 @@ void gather_field(Field& field, const std::array<const float*, 9>& planes);
 /// Computes what follows from w and s, the fluxes through the faces, and dw and ds from them. Returns whether some
 /// texel has less liquid than `rim_depth`.
 bool fluxes(Work& work, const Geometry& g, const Step& step);
+/// Sets the slope [256] of the liquid over rims, of what of `total` is no higher than `depth`, per texel.
+void rim_slopes(float* slope, const Field& total, const Geometry& g, float depth);
 
 /// Liquid on the tiles to the left, to the right, below and above [256], null: none; and in which of this and
 /// their blocks it may flow from block to block.
@@ -190,6 +192,7 @@ struct LocalFilms {
     float* w;                                    ///< [256] film units on the surface
     float* s;                                    ///< [256] film units in the pores
     std::array<std::uint8_t, kTexels>& closing;  ///< [256] 1 where a wet texel became dry
+    const float* drying = nullptr;               ///< [256] factor of what dries; null: 1
 };
 
 /// Adds dw and ds to the films of `work`, then evaporates. `seed` is that of the dither.
