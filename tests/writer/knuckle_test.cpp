@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/files/files.h"
+#include "writer/fit/edge_response.h"
 #include "writer/fit/fairing.h"
 #include "writer/fit/ink_score.h"
 #include "writer/fit/knuckle_fit.h"
@@ -144,6 +145,44 @@ TEST(Fairing, AFittedPathPumpsLessAndCoversAsMuch) {
     }
 }
 
+// Binary cells know their edge to a cell, the distance from cell to cell is handed on
+// within a tenth of a unit.
+TEST(EdgeResponse, DistancesFromADiscAreThoseOfItsRadius) {
+    const Cells cells = cells_of({disc({200, 100}, 40)});
+    const std::vector<float> distances = edge_distances(cells, coverage_of(cells));
+    double worst = 0, sum = 0;
+    int n = 0;
+    for (int j = 0; j < cells.height; ++j)
+        for (int i = 0; i < cells.width; ++i) {
+            const double from = glm::distance(cells.centre(i, j), Vec2(200, 100));
+            if (std::abs(from - 40) > 20) continue;
+            const double error = double(distances[std::size_t(j) * cells.width + i]) - (40 - from);
+            worst = std::max(worst, std::abs(error)), sum += error * error, ++n;
+        }
+    EXPECT_LT(worst, 2);                                 // a cell
+    EXPECT_LT(std::sqrt(sum / n), 2 / std::sqrt(12.0));  // of what is known to a cell of 2 units
+}
+
+// The edge of a half plane moves as the numbers say, so the response of two drawings foretells all; of a number whose
+// slope was taken wrongly, one more drawing puts it right along the change that was drawn.
+TEST(EdgeResponse, ForetellsLinesThatMoveAndLearnsWhatItDoesNotKnow) {
+    const auto line = [](double a, double b) {
+        std::vector<float> d;
+        for (int i = 0; i < 50; ++i) d.push_back(static_cast<float>(i - 20 + 2 * a - 3 * b));
+        return d;
+    };
+    EdgeResponse<2> response(line(0, 0));
+    response.set_slope(0, 1, line(1, 0));
+    response.set_slope(1, -1, line(0, -1));
+    EXPECT_EQ(response.distances({3, 2}), line(3, 2));
+    EdgeResponse<2> wrong(line(0, 0));
+    wrong.set_slope(0, 1, line(1, 0));
+    wrong.learn({0, 2}, line(0, 2), true);
+    EXPECT_EQ(wrong.at(), (EdgeResponse<2>::Numbers{0, 2}));
+    const std::vector<float> after = wrong.distances({1, 4}), truth = line(1, 4);
+    for (std::size_t i = 0; i < truth.size(); ++i) EXPECT_NEAR(after[i], truth[i], 1e-4);
+}
+
 /// A straight bar of half width 20 with round ends, and a path that swells by `more` units in its middle.
 struct SwollenBar {
     FitTarget target{.wanted = cells_of(bar()), .weights = {}};
@@ -157,6 +196,25 @@ struct SwollenBar {
         }
     }
 };
+
+// A stroke that is drawn in three parts, each from where the tuft was bent to, is the stroke that is drawn at once.
+TEST(Knuckles, TheInkOfPartsIsThatOfTheWhole) {
+    stroke::WidthTables tables;
+    const std::string brush = "goat-medium";
+    const BrushHand hand{tables.preset(brush), tables.of(brush), tables.holder(brush), 1.3e-4};
+    const SwollenBar bar(10);
+    const Cells& cells = bar.target.wanted;
+    const stroke::StrokeSamples trace = samples_of(bar.fitted.stations, hand, {});
+    const double all = trace.samples.back().time;
+    stroke::PlaneDrawing drawing(hand.preset, hand.hold, 2.5 * hand.unit, cells.cell * hand.unit);
+    const std::vector<float> whole = coverage_by(drawing.draw(trace), cells);
+    std::vector<float> parts = coverage_by(drawing.keep(trace, 0.4 * all), cells);
+    EXPECT_NE(parts, whole);
+    for (const auto& next :
+         {coverage_by(drawing.draw_part(trace, 0.7 * all), cells), coverage_by(drawing.draw_rest(trace), cells)})
+        for (std::size_t k = 0; k < parts.size(); ++k) parts[k] = std::max(parts[k], next[k]);
+    EXPECT_EQ(parts, whole);
+}
 
 // By its score less the price of its knuckles (knuckle_fit.h) no stroke may lose; of this one's three knuckles, two at
 // its ends and one in its middle, at least one goes. The result states what the whole stroke then reaches, and is the
@@ -179,7 +237,7 @@ TEST(Knuckles, TakenOffOneByOneTheyAreFewerAndTheStrokeIsWorthMore) {
             coverage_by(draw_on_plane(stations, hand, {}, options.fine_step, target.wanted.cell), target.wanted);
         const std::vector<EdgeTurn> knuckles = seen_knuckles(target, turns, coverage);
         const InkScore reached = score_of(target, depths, coverage);
-        return Seen{knuckles.size(), reached.iou, reached.score - 0.0015 * sharpness_of(knuckles)};
+        return Seen{knuckles.size(), reached.iou, reached.score - 0.002 * sharpness_of(knuckles)};
     };
     FitResult once = swollen.fitted, again = swollen.fitted;
     take_off_knuckles(once, {target, target, depths}, hand, {}, options);

@@ -137,17 +137,16 @@ void PlaneDrawing::begin(const State& from) {
     root_ = from.root, missed_ = from.missed;
 }
 
-PlaneDrawing::State PlaneDrawing::draw_on(const std::vector<brush::Pose>& poses, const State& from, double until) {
+void PlaneDrawing::draw_on(const std::vector<brush::Pose>& poses, State from, double until) {
     begin(from);
-    State at = from;
-    for (; at.poses < poses.size() && poses[at.poses].time <= until; ++at.poses) {
-        const brush::Pose& pose = poses[at.poses];
-        add_stamp(pose, at.poses == 0 ? 0 : pose.time - at.time);
-        at.time = pose.time;
+    last_ = std::move(from);
+    for (; last_.poses < poses.size() && poses[last_.poses].time <= until; ++last_.poses) {
+        const brush::Pose& pose = poses[last_.poses];
+        add_stamp(pose, last_.poses == 0 ? 0 : pose.time - last_.time);
+        last_.time = pose.time;
     }
-    at.bend = tuft_;
-    at.before = before_, at.root = root_, at.missed = missed_;
-    return at;
+    last_.bend = tuft_;
+    last_.before = before_, last_.root = root_, last_.missed = missed_;
 }
 
 const PlaneInk& PlaneDrawing::draw(const StrokeSamples& trace) {
@@ -155,12 +154,19 @@ const PlaneInk& PlaneDrawing::draw(const StrokeSamples& trace) {
     return ink_;
 }
 
-void PlaneDrawing::keep(const StrokeSamples& trace, double time) {
-    kept_ = draw_on(poses_of(trace), fresh_, time);
+const PlaneInk& PlaneDrawing::keep(const StrokeSamples& trace, double time) {
+    draw_on(poses_of(trace), fresh_, time);
+    kept_ = last_;
+    return ink_;
 }
 
 const PlaneInk& PlaneDrawing::draw_part(const StrokeSamples& trace, double until) {
     draw_on(poses_of(trace), kept_, until);
+    return ink_;
+}
+
+const PlaneInk& PlaneDrawing::draw_rest(const StrokeSamples& trace) {
+    draw_on(poses_of(trace), last_, std::numeric_limits<double>::infinity());
     return ink_;
 }
 

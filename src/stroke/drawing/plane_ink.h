@@ -55,11 +55,15 @@ class PlaneDrawing {
     PlaneDrawing(const brush::Preset& preset, const HolderOptions& hold, double step, double cell);
     /// Returns the ink of a trace, until the next call.
     const PlaneInk& draw(const StrokeSamples& trace);
-    /// Bends the tuft along a trace up to a time (seconds) and keeps that state for `draw_part`.
-    void keep(const StrokeSamples& trace, double time);
+    /// Bends the tuft along a trace up to a time (seconds) and keeps that state for `draw_part`. Returns the ink up to
+    /// there, until the next call.
+    const PlaneInk& keep(const StrokeSamples& trace, double time);
     /// Returns the ink of the part of a trace from the kept state on up to a time, until the next call. Precondition:
     /// up to the time of the kept state the trace is the one that was kept.
     const PlaneInk& draw_part(const StrokeSamples& trace, double until);
+    /// Returns the ink of what follows on the last part that was drawn or kept, until the next call. `trace`: that of
+    /// the part.
+    const PlaneInk& draw_rest(const StrokeSamples& trace);
 
   private:
     struct State {
@@ -72,13 +76,13 @@ class PlaneDrawing {
     };
     std::vector<brush::Pose> poses_of(const StrokeSamples& trace) const;
     void begin(const State& from);
-    State draw_on(const std::vector<brush::Pose>& poses, const State& from, double until);
+    void draw_on(const std::vector<brush::Pose>& poses, State from, double until);
     void add_stamp(const brush::Pose& pose, double dt);
 
     HolderOptions hold_;
     double step_;
     brush::Tuft tuft_;
-    State fresh_, kept_;
+    State fresh_, kept_, last_;  // before a trace, at what is kept, at the end of the last drawing
     PlaneInk ink_;
     Recycled<footprint::Trail> before_;  // of the pose before, of a tuft with several spines
     Vec3 root_{0};                       // metres, there

@@ -275,11 +275,13 @@ void fit_finely(FitResult& best, const FitTarget& target, const FitTarget& whole
         const stroke::StrokeSamples trace = samples_of(next, hand, pace);
         const stroke::PlaneInk& ink = fine.draw(trace);
         const Try now = judged(target, depths, trace, ink, next, next, hand.unit);
-        const double value =
-            now.reached.score - price * sharpness_of(whole, wanted_turns, coverage_by(ink, target.wanted));
+        std::vector<float> inked = coverage_by(ink, target.wanted);
+        const double value = now.reached.score - price * sharpness_of(whole, wanted_turns, inked);
         ++best.tries;
-        if (t == 1 || value > best_value)
+        if (t == 1 || value > best_value) {
             best.stations = next, best.iou = now.reached.iou, best.score = now.reached.score, best_value = value;
+            best.inked = std::move(inked);
+        }
         if (t == options.last_tries) break;
         correct(next, before_last, soft, now.errors, kManners[0]);
         if (options.fair) make_fair(next, kStiffWay, kStiffHalf);

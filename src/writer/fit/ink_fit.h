@@ -38,6 +38,7 @@ struct FitResult {
     double iou = 0;    ///< weighted intersection over union with the wanted area
     double score = 0;  ///< that, with wrong cells counted by their depth
     int tries = 0;
+    std::vector<float> inked;  ///< coverage of the target's cells by them, in fine steps
 };
 
 /// Fits stations to a wanted area.

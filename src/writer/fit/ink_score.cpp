@@ -26,19 +26,27 @@ std::vector<float> coverage_by(const stroke::PlaneInk& ink, const Cells& cells) 
     return coverage;
 }
 
-InkScore score_of(const FitTarget& target, std::span<const float> depths, std::span<const float> coverage) {
-    double both = 0, either = 0, deep = 0;
+InkSums sums_of(const FitTarget& target, std::span<const float> depths, std::span<const float> coverage) {
+    InkSums sums;
     for (std::size_t at = 0; at < coverage.size(); ++at) {
         const bool wanted = target.wanted.inside[at] != 0, there = coverage[at] > kTaken;
         if (wanted == there) {
-            both += there, either += there;
+            sums.both += there, sums.either += there;
             continue;
         }
         const double weight = target.weight(at);
-        either += weight;
-        deep += weight * static_cast<double>(depths[at]) / kRim;
+        sums.either += weight;
+        sums.deep += weight * static_cast<double>(depths[at]) / kRim;
     }
-    return {either > 0 ? both / either : 0, both > 0 ? both / (both + deep) : 0};
+    return sums;
+}
+
+InkScore score_of(const InkSums& s) {
+    return {s.either > 0 ? s.both / s.either : 0, s.both > 0 ? s.both / (s.both + s.deep) : 0};
+}
+
+InkScore score_of(const FitTarget& target, std::span<const float> depths, std::span<const float> coverage) {
+    return score_of(sums_of(target, depths, coverage));
 }
 
 std::vector<EdgeTurn> wanted_edge_turns(const Cells& wanted) {

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kMargin = 80;                 // units of cells around a stroke
 constexpr float kUnder = 0.25f;                // weight of an error under another stroke
-constexpr std::uint64_t kVersion = 23;         // of the fit
+constexpr std::uint64_t kVersion = 24;         // of the fit
 constexpr std::size_t kMostStations = 20'000;  // of a stroke
 constexpr double kMiddlePressure = 0.4;        // that draws the median width
 constexpr double kCoarse = 3;                  // median widths of a line at that pressure: the brush is too coarse

@@ -1,10 +1,9 @@
 #include "writer/gesture/cells.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <utility>
 
 namespace tuft::writer {
 namespace {
@@ -108,26 +107,34 @@ std::vector<float> clearances(const Cells& cells) {
 }
 
 std::vector<Ring> boundaries(const Cells& c, int passes) {
-    using Corner = std::pair<int, int>;
-    std::map<Corner, std::vector<Corner>> next;
+    // Edges from each corner of cells, at most two, by the number of the corner: column after column.
+    const auto rows = static_cast<std::size_t>(c.height) + 1;
+    struct Ways {
+        std::array<std::uint32_t, 2> to{};
+        std::uint8_t n = 0;
+    };
+    std::vector<Ways> next((static_cast<std::size_t>(c.width) + 1) * rows);
+    const auto corner = [&](int i, int j) { return static_cast<std::size_t>(i) * rows + static_cast<std::size_t>(j); };
+    const auto add = [&](std::size_t from, std::size_t to) {
+        next[from].to[next[from].n++] = static_cast<std::uint32_t>(to);
+    };
     for (int j = 0; j < c.height; ++j)
         for (int i = 0; i < c.width; ++i) {
             if (!c.at(i, j)) continue;
-            if (!c.at(i, j - 1)) next[{i, j}].push_back({i + 1, j});
-            if (!c.at(i + 1, j)) next[{i + 1, j}].push_back({i + 1, j + 1});
-            if (!c.at(i, j + 1)) next[{i + 1, j + 1}].push_back({i, j + 1});
-            if (!c.at(i - 1, j)) next[{i, j + 1}].push_back({i, j});
+            if (!c.at(i, j - 1)) add(corner(i, j), corner(i + 1, j));
+            if (!c.at(i + 1, j)) add(corner(i + 1, j), corner(i + 1, j + 1));
+            if (!c.at(i, j + 1)) add(corner(i + 1, j + 1), corner(i, j + 1));
+            if (!c.at(i - 1, j)) add(corner(i, j + 1), corner(i, j));
         }
     std::vector<Ring> rings;
-    while (!next.empty()) {
-        Ring ring;
-        Corner at = next.begin()->first;
-        for (auto found = next.find(at); found != next.end(); found = next.find(at)) {
-            ring.push_back(c.lo + c.cell * Vec2(at.first, at.second));
-            at = found->second.back();
-            found->second.pop_back();
-            if (found->second.empty()) next.erase(found);
+    for (std::size_t begin = 0; begin < next.size();) {
+        if (next[begin].n == 0) {
+            ++begin;
+            continue;
         }
+        Ring ring;
+        for (std::size_t at = begin; next[at].n > 0; at = next[at].to[--next[at].n])
+            ring.push_back(c.lo + c.cell * Vec2(static_cast<double>(at / rows), static_cast<double>(at % rows)));
         for (int pass = 0; pass < passes; ++pass) {
             const Ring old = ring;
             const std::size_t n = ring.size();

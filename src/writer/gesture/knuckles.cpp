@@ -11,16 +11,6 @@ constexpr double kApart = 2;    // units between points of it
 constexpr double kNear = 30;    // units from a knuckle within which a turn of the area explains it
 constexpr double kAlike = 0.5;  // part of a knuckle's curvature that such a turn has
 
-/// Coverage smoothed over neighbours by (¼ ½ ¼) in both directions: the edge of a binary area lies between cells.
-std::vector<float> softened(const Cells& c, std::span<const float> coverage) {
-    std::vector<float> rows(coverage.size(), 0), out(coverage.size(), 0);
-    const auto w = static_cast<std::size_t>(c.width), n = coverage.size();
-    for (std::size_t k = 1; k + 1 < n; ++k)
-        rows[k] = 0.25f * coverage[k - 1] + 0.5f * coverage[k] + 0.25f * coverage[k + 1];
-    for (std::size_t k = w; k + w < n; ++k) out[k] = 0.25f * rows[k - w] + 0.5f * rows[k] + 0.25f * rows[k + w];
-    return out;
-}
-
 /// The line at coverage ½ as rings, the area on the left: where it crosses from one centre of a cell to the next.
 std::vector<Ring> edges_of(const Cells& frame, std::span<const float> coverage) {
     Cells cells = frame;
@@ -67,10 +57,19 @@ std::vector<float> coverage_of(const Cells& cells) {
     return {cells.inside.begin(), cells.inside.end()};
 }
 
+std::vector<float> softened_coverage(const Cells& c, std::span<const float> coverage) {
+    std::vector<float> rows(coverage.size(), 0), out(coverage.size(), 0);
+    const auto w = static_cast<std::size_t>(c.width), n = coverage.size();
+    for (std::size_t k = 1; k + 1 < n; ++k)
+        rows[k] = 0.25f * coverage[k - 1] + 0.5f * coverage[k] + 0.25f * coverage[k + 1];
+    for (std::size_t k = w; k + w < n; ++k) out[k] = 0.25f * rows[k - w] + 0.5f * rows[k] + 0.25f * rows[k + w];
+    return out;
+}
+
 std::vector<EdgeTurn> edge_turns(const Cells& frame, std::span<const float> coverage, double least) {
     constexpr int kPasses = static_cast<int>(2 * (kSoft / kApart) * (kSoft / kApart));  // each adds ½ to the variance
     std::vector<EdgeTurn> turns;
-    for (const Ring& edge : edges_of(frame, softened(frame, coverage))) {
+    for (const Ring& edge : edges_of(frame, softened_coverage(frame, coverage))) {
         Ring p = resampled_ring(edge);
         const std::size_t n = p.size();
         if (n < 8) continue;

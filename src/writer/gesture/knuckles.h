@@ -21,6 +21,10 @@ inline constexpr double kKnuckle = 1.0 / 25;  ///< 1/units, least curvature of a
 /// Returns the coverage of cells: 1 in the area, else 0. [cells]
 std::vector<float> coverage_of(const Cells& cells);
 
+/// Returns a coverage smoothed over neighbours by (¼ ½ ¼) in both directions: the edge of a binary area lies between
+/// cells. 0 in the outermost cells.
+std::vector<float> softened_coverage(const Cells& frame, std::span<const float> coverage);
+
 /// Returns the turns with a curvature above `least`, or below −`least`, of the line at half of a coverage (0–1, [cells
 /// of `frame`]), which is smoothed along itself by a Gaussian of 6 units. Cost: 20 µs per 100 units of the line, 10 ns
 /// a cell.
