@@ -36,11 +36,10 @@ SweepRow rms_difference(std::span<const SweepRow> swept, std::span<const SweepRo
 
 std::vector<ModelSweep> compare_models(const Preset& preset, std::span<const SweepRow> measured) {
     const std::vector<double> depths = depths_of(measured);
-    std::vector<ModelSweep> models(std::size(kSpineWords));
-    for (std::size_t m = 0; m < models.size(); ++m) {
-        models[m].method = static_cast<SpineMethod>(m);
-        models[m].rows.resize(depths.size());
-    }
+    std::vector<ModelSweep> models;
+    for (std::size_t m = 0; m < std::size(kSpineWords); ++m)
+        if (const auto method = static_cast<SpineMethod>(m); can_bend(method, preset))
+            models.push_back({.method = method, .rows = std::vector<SweepRow>(depths.size()), .rms = {}, .spine = {}});
     parallel_for(models.size() * depths.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             ModelSweep& model = models[k / depths.size()];

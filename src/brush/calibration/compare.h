@@ -27,7 +27,8 @@ struct ModelSweep {
     std::vector<Vec2> spine;
 };
 
-/// Returns the sweep of each method with the constants of `preset`, in the order of `SpineMethod`. Nothing is fitted.
+/// Returns the sweep of each method that can bend such a tuft (`can_bend`) with the constants of `preset`, in the order
+/// of `SpineMethod`. Nothing is fitted.
 /// Cost: a fraction of a second.
 std::vector<ModelSweep> compare_models(const Preset& preset, std::span<const SweepRow> measured);
 

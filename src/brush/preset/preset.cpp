@@ -237,6 +237,13 @@ void check_geometry(const Preset& p, const std::string& source) {
 
 }  // namespace
 
+bool can_bend(SpineMethod method, const Preset& p) {
+    if (method == SpineMethod::rod) return true;
+    if (is_foam(p) || p.geometry) return false;
+    const bool flat = has_broad_side(p) && p.splay == 0 && p.slant == 0;
+    return p.spines == 1 || (flat && (method == SpineMethod::chain || method == SpineMethod::truss));
+}
+
 void check_preset(const Preset& p, const std::string& source) {
     for (const Field& f : kFields) {
         const double v = p.*f.member / f.unit;
@@ -267,10 +274,7 @@ void check_preset(const Preset& p, const std::string& source) {
     if (std::max(p.toe, p.slant) > 0.8 * p.length) {
         throw Error(source, "the hair at the ferrule's edge must be a fifth of 'shape.length_mm' or longer");
     }
-    // Baxter has two trusses for a flat and four for a filbert, Van Laerhoven two chains with a lattice between.
-    const bool flat = has_broad_side(p) && p.splay == 0 && p.slant == 0;
-    const bool known = flat && (p.spine == SpineMethod::chain || p.spine == SpineMethod::truss);
-    if (p.spines > 1 && p.spine != SpineMethod::rod && !known) {
+    if (!can_bend(p.spine, p)) {
         throw Error(
             source,
             "several spines need 'bending.spine' = \"rod\", or those of a flat or filbert \"chain\" or \"truss\"");

@@ -143,6 +143,11 @@ inline double tuft_width(const Preset& preset) {
     return has_broad_side(preset) ? preset.width : 2 * preset.radius;
 }
 
+/// Whether a spine method bends such a tuft: `rod` any, the others hair of one spine without a geometry; `chain` and
+/// `truss` flats and filberts too (Van Laerhoven has two chains with a lattice between, Baxter two trusses for a flat
+/// and four for a filbert).
+bool can_bend(SpineMethod method, const Preset& preset);
+
 /// Returns a preset scaled by `factor` that draws the same strokes at that size. Lengths scale by `factor`, B0 by
 /// its fourth power and adhesion (N/m) by `factor`, so forces scale by its square and shapes are similar. Capacity
 /// scales by its square, like the area that a stroke covers. The device force is unchanged. Of a sponge the capacity

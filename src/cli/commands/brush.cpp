@@ -238,7 +238,10 @@ int compare(const Brush& a) {
     check_output(a.picture);
     const std::vector<brush::SweepRow> measured = brush::read_sweep(a.compare.string());
     brush::Preset preset = brush::load_preset(a.name.empty() ? "robot-2020" : a.name);
-    if (const auto length = brush::stated_length(a.compare.string())) preset.length = *length;
+    // In the size that has hair of that length, so that a toe, a slant or a geometry stays in proportion.
+    if (const auto length = brush::stated_length(a.compare.string());
+        length && *length != preset.length && !brush::is_foam(preset))
+        preset = brush::scaled(preset, *length / preset.length);
     brush::check_preset(preset, preset.name);
     const std::vector<brush::ModelSweep> models = brush::compare_models(preset, measured);
     if (!a.picture.empty()) {
