@@ -123,6 +123,11 @@ std::vector<FerruleSpine> ferrule_spines(const Preset& p) {
     return out;
 }
 
+double hair_length(const Preset& p, double s) {
+    const double outermost = p.slant > 0 ? 2 * ferrule_spines(p).back().x / p.width : 1;
+    return std::min(1.0, length_at(p, s, outermost));
+}
+
 FerruleSpine single_spine(const Preset& p) {
     double area = 0;
     for (const FerruleSpine& spine : ferrule_spines(p)) area += spine.pitch * spine.thick;

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "brush/surface/tuft_surface.h"
+#include "brush/tuft/ferrule.h"
 #include "core/ease.h"
 #include "core/random.h"
 #include "footprint/outline/outline.h"
@@ -110,6 +111,23 @@ Vec3 point_in_row(const std::vector<Strand>& strands, std::size_t k, std::size_t
     return glm::mix(own, at(beside, place.x + (next ? -2 : 2) * kChord), 0.5 * std::abs(place.x) / kChord);
 }
 
+/// Metres by which the hair of a row ends beyond the end of its spine: that of a toe or a blade differs in length from
+/// one side of a strip to the other.
+double beyond_spine(const Tuft& tuft, const Placed& placed) {
+    const Preset& p = tuft.preset;
+    if (!(p.toe > 0 || p.slant > 0)) return 0;
+    return p.length *
+           (hair_length(p, placed.whole.x) - tuft.spines[static_cast<std::size_t>(placed.part.branch)].rest_length);
+}
+
+/// First section from the tip on, from `stop`, that lies `cut` metres or more from the tip.
+std::size_t first_left(const Recycled<Section>& sections, std::size_t stop, double cut) {
+    std::size_t i = 0;
+    for (double gone = 0; i + 2 < sections.size() && gone < cut; ++i)
+        gone += glm::distance(sections[i].centre, sections[i + 1].centre);
+    return std::max(i, stop);
+}
+
 /// `from`: the first section that is filled.
 void fill_silhouette(BrushCanvas& canvas, const Strand& strand, const BrushView& view, const Vec3& colour,
                      std::size_t from) {
@@ -182,16 +200,27 @@ void draw_tuft_hair(BrushCanvas& canvas, const Tuft& tuft, const TuftState& stat
         const Recycled<Section>& fine = strands[k].sections;
         const double readiness = bristles[h].readiness, n = static_cast<double>(fine.size());
         // Hairs end at unequal lengths; water draws all of them to the point.
-        const double short_by = appearance.dry ? 0.16 * readiness : 0.3 * readiness * readiness * glm::length(p.whole);
-        const auto stop = static_cast<std::size_t>(short_by * n);
+        const double outward = state.strips ? std::abs(p.whole.y) : glm::length(p.whole);
+        const double short_by = appearance.dry ? 0.16 * readiness : 0.3 * readiness * readiness * outward;
+        const double beyond = state.strips ? beyond_spine(tuft, p) : 0;
+        const std::size_t stop = first_left(fine, static_cast<std::size_t>(short_by * n), -beyond);
         line.clear();
         width.clear();
         double lit = 0;
+        const double ahead = stop == 0 ? std::max(0.0, beyond) / tuft.preset.length : 0;
         for (std::size_t i = stop; i < fine.size(); ++i) {
             const std::optional<Vec2> at = p.at(strands[k], k, i);
             if (!at) continue;
-            line.push_back(view(state.strips ? point_in_row(strands, k, i, *at) : point_of(fine[i], *at)));
-            width.push_back(0.5 + (appearance.dry ? 0.7 : 1.1) * std::min(1.0, 4 * static_cast<double>(i - stop) / n));
+            const Vec3 place = state.strips ? point_in_row(strands, k, i, *at) : point_of(fine[i], *at);
+            if (i == 0 && ahead > 0) {
+                Vec3 end = place + beyond * fine[i].tangent;
+                end.z = std::max(end.z, appearance.ground);
+                line.push_back(view(end));
+                width.push_back(0.5);
+            }
+            line.push_back(view(place));
+            const double from_end = static_cast<double>(i - stop) / n + ahead;
+            width.push_back(0.5 + (appearance.dry ? 0.7 : 1.1) * std::min(1.0, 4 * from_end));
             lit += glm::dot(at->x * fine[i].e + at->y * fine[i].m, light);
         }
         if (line.size() < 2) continue;
