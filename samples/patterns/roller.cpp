@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "footprint/stamp/plan_scratch.h"
+
 namespace tuft::samples {
 namespace {
 

@@ -10,7 +10,6 @@ namespace tuft::samples {
 namespace {
 
 using stroke::BrushAction;
-using stroke::BrushActionKind;
 using stroke::Dry;
 using stroke::Preparation;
 

@@ -12,24 +12,23 @@ namespace tuft::samples {
 namespace {
 
 using stroke::BrushAction;
-using stroke::BrushActionKind;
 using stroke::Dry;
 using stroke::Preparation;
 
 constexpr double kPi = std::numbers::pi;
 
 const BrushAction kTip(const char* ink, double depth) {
-    return BrushAction{.kind = BrushActionKind::dip, .ink = ink, .extent = {.depth = depth}};
+    return BrushAction{.what = stroke::Dip{.depth = depth}, .ink = ink};
 }
 const BrushAction kWipeTip(double depth) {
-    return BrushAction{.kind = BrushActionKind::wipe, .extent = {.depth = depth, .amount = 0.95}};
+    return BrushAction{.what = stroke::Wipe{.depth = depth, .amount = 0.95}};
 }
 const BrushAction kFlank(const char* ink, double side) {
-    return BrushAction{.kind = BrushActionKind::dip, .ink = ink, .extent = {.depth = 1, .side = side}};
+    return BrushAction{.what = stroke::Dip{.depth = 1, .side = side}, .ink = ink};
 }
 const Dry kDry{};
 const BrushAction kWipe(double amount) {
-    return BrushAction{.kind = BrushActionKind::wipe, .extent = {.amount = amount}};
+    return BrushAction{.what = stroke::Wipe{.amount = amount}};
 }
 
 struct Branch : Series {

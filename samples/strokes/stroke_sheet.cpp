@@ -57,10 +57,8 @@ std::vector<stroke::RecordedStroke> stroke_sheet() {
         w.add(na({90, 110}, {690, 800}, {990, 830}, 210), brush, 5, row);
         ++row;
     }
-    using stroke::BrushActionKind;
     const auto wiped = [](double amount) {
-        return std::vector<stroke::Preparation>{
-            stroke::BrushAction{.kind = BrushActionKind::wipe, .extent = {.amount = amount}}};
+        return std::vector<stroke::Preparation>{stroke::BrushAction{.what = stroke::Wipe{.amount = amount}}};
     };
     const char* brush = "mixed-medium";
     // The holder leans across the stroke, so that the tip runs along one side of it.

@@ -11,7 +11,6 @@ namespace tuft::samples {
 namespace {
 
 using stroke::BrushAction;
-using stroke::BrushActionKind;
 using stroke::Dry;
 using stroke::Preparation;
 
@@ -80,13 +79,12 @@ std::vector<stroke::RecordedStroke> wet_sheet() {
     // Petals: yellow in the belly, red in the tip.
     Writer flower = on_sheet(-50, 40);
     for (int k = 0; k < 5; ++k)
-        flower.add(
-            petal(2 * std::numbers::pi * (k + 0.1) / 5, 5, 27, 11),
-            {.brush = "mixed-large",
-             .ink = "samples/inks/gamboge-wash.toml",
-             .options = {.speed = 0.03},
-             .before = {BrushAction{.kind = BrushActionKind::wipe, .extent = {.depth = kRedTip, .amount = 0.95}},
-                        BrushAction{.kind = BrushActionKind::dip, .ink = "cinnabar", .extent = {.depth = kRedTip}}}});
+        flower.add(petal(2 * std::numbers::pi * (k + 0.1) / 5, 5, 27, 11),
+                   {.brush = "mixed-large",
+                    .ink = "samples/inks/gamboge-wash.toml",
+                    .options = {.speed = 0.03},
+                    .before = {BrushAction{.what = stroke::Wipe{.depth = kRedTip, .amount = 0.95}},
+                               BrushAction{.what = stroke::Dip{.depth = kRedTip}, .ink = "cinnabar"}}});
     append(out, std::move(flower));
     // Three glazes, each over the dry one below.
     Writer glazes = on_sheet(48, 40);
@@ -125,7 +123,7 @@ std::vector<stroke::RecordedStroke> wet_sheet() {
                     {40, y - 9, 0, 1}}},
                   {.brush = k ? "goat-medium" : "wolf-large",
                    .options = {.speed = 0.25, .acceleration = 6},
-                   .before = {BrushAction{.kind = BrushActionKind::wipe, .extent = {.amount = amounts[k]}}}});
+                   .before = {BrushAction{.what = stroke::Wipe{.amount = amounts[k]}}}});
     }
     append(out, std::move(sweep));
     return out;
@@ -164,11 +162,10 @@ std::vector<stroke::RecordedStroke> backrun() {
             {.brush = "mixed-large",
              .ink = "water",
              .options = {.speed = 0.02},
-             .before = x < 0 ? std::vector<Preparation>{Dry{25}, BrushAction{.kind = BrushActionKind::dip,
-                                                                             .ink = "water",
-                                                                             .extent = {.amount = 1.02}}}
-                             : std::vector<Preparation>{BrushAction{
-                                   .kind = BrushActionKind::dip, .ink = "water", .extent = {.amount = 1.02}}}});
+             .before =
+                 x < 0 ? std::vector<Preparation>{Dry{25},
+                                                  BrushAction{.what = stroke::Dip{.amount = 1.02}, .ink = "water"}}
+                       : std::vector<Preparation>{BrushAction{.what = stroke::Dip{.amount = 1.02}, .ink = "water"}}});
     return std::move(w.out);
 }
 
@@ -186,7 +183,7 @@ std::vector<stroke::RecordedStroke> wet_vase() {
           {.brush = "mixed-large",
            .ink = "indigo",
            .options = {.speed = 0.03},
-           .before = {BrushAction{.kind = BrushActionKind::dip, .ink = "indigo", .extent = {.amount = 1.045}}}});
+           .before = {BrushAction{.what = stroke::Dip{.amount = 1.045}, .ink = "indigo"}}});
     return std::move(w.out);
 }
 

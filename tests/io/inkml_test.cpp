@@ -306,6 +306,12 @@ TEST(Inkml, WhatIsDoneWithTheBrushStandsOnTheTraceInOrder) {
                                      "</annotation>0 0, 1 1</trace></ink>",
                                  "bad.inkml"),
                      Error);
+    for (const char* bad : {"wipe\" amount=\"1.5", "wipe\" time=\"3", "rinse\" depth=\"0.5", "dip\" time=\"-1"})
+        EXPECT_THROW(
+            parse_inkml(std::string("<ink><trace><annotation type=\"tuft:") + bad + "\"/>0 0, 1 1</trace></ink>",
+                        "number.inkml"),
+            Error)
+            << bad;
     EXPECT_THROW(parse_inkml("<ink><trace><annotation type=\"tuft:wipe\" amount=\"1.5\"/>0 0, 1 1</trace></ink>",
                              "amount.inkml"),
                  Error);

@@ -115,7 +115,7 @@ double seconds_of(const InkmlText& file, const xml_node& node, std::string_view 
 
 stroke::BrushChange change_of(const InkmlText& file, const xml_node& node, stroke::EntryKind kind) {
     stroke::BrushChange change = stroke::change_of(kind);
-    for (const stroke::ChangeNumber& n : stroke::numbers_of(change)) {
+    for (const stroke::ChangeNumber& n : stroke::numbers_of(stroke::Dip{})) {  // the kind that has them all
         const std::string_view text = node.attribute(n.name).value();
         if (text.empty()) continue;
         double value = 0;
@@ -123,7 +123,8 @@ stroke::BrushChange change_of(const InkmlText& file, const xml_node& node, strok
         if (error != std::errc{} || end != text.data() + text.size())
             file.fail(node,
                       Message("{} of a dip or wipe is a number, not '{}'", std::string(n.name), std::string(text)));
-        stroke::set_number(change, n.name, value);
+        if (!stroke::set_number(change, n.name, value))
+            file.fail(node, Message("a {} has no {}", stroke::name_of(kind), std::string(n.name)));
     }
     try {
         stroke::check_change(change);

@@ -6,7 +6,7 @@
 #include "stroke/journal/entry/flat_area.h"
 
 /// \file
-/// Lines of a drawing as wide on the surface as they are drawn. Called by document/apply_area.h.
+/// Lines of a drawing as wide on the surface as they are drawn. Called by painting/apply_area.h.
 namespace tuft::stroke {
 
 /// Points of a flat drawing's rectangle on the surface, at the nodes of a grid.

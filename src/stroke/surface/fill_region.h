@@ -7,7 +7,7 @@
 #include "stroke/surface/model.h"
 
 /// \file
-/// Charts that a fill covers. Called by document/apply_fill.h.
+/// Charts that a fill covers. Called by painting/apply_fill.h.
 
 namespace tuft::stroke {
 

@@ -10,7 +10,7 @@
 
 /// \file
 /// Texels of a model in the flat coordinates of a drawing: the inverse of `map_to_surface`. Called by
-/// document/apply_area.h, which keeps one for all areas of a drawing.
+/// painting/apply_area.h, which keeps one for all areas of a drawing.
 namespace tuft::stroke {
 
 /// A drawing's place.

@@ -9,7 +9,7 @@
 #include "stroke/journal/entry/layers.h"
 
 /// \file
-/// Fills and gradients: ink over a whole part of a model. `Document` carries them out (document/apply_fill.h).
+/// Fills and gradients: ink over a whole part of a model. `Document` carries them out (painting/apply_fill.h).
 namespace tuft::stroke {
 
 /// Part of the model that is filled.

@@ -10,7 +10,7 @@
 
 /// \file
 /// Flat areas of a drawing. An area is masked, the ink in it is taken away, and an even or graded film is deposited.
-/// Part of `Fill`; document/apply_area.h puts them onto texels.
+/// Part of `Fill`; painting/apply_area.h puts them onto texels.
 namespace tuft::stroke {
 
 /// Colour of an area at a parameter of its gradient.
