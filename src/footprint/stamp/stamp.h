@@ -8,7 +8,7 @@
 #include "atlas/texels/cluster_graph.h"
 #include "core/system/recycled.h"
 #include "footprint/outline/footprint.h"
-#include "footprint/outline/isa.h"
+#include "footprint/outline/picture.h"
 
 /// \file
 /// From a footprint to the texels it exposes. `stroke` calls it for each batch of stamps.
