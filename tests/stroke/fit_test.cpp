@@ -8,6 +8,7 @@
 
 #include "core/random.h"
 #include "sheet.h"
+#include "stroke/drawing/follow_model.h"
 
 namespace tuft::stroke {
 namespace {
@@ -179,6 +180,19 @@ TEST(Fit, AnAreaOfADrawingIsComparedAlongItsEdge) {
         const Message reason = mismatch_reason(fit_on(*aside.mesh, square(mapping), true));
         EXPECT_TRUE(reason.text().starts_with("lies 20.0 mm from its place on the model")) << reason.text();
     }
+    // It follows a model that is half as large again, point by point.
+    const Model former = sheet({}, kSmall);
+    mesh::TriangleMesh larger = *former.mesh;
+    for (Vec3f& position : larger.positions) position *= 1.5f;
+    const mesh::SurfaceQuery query(larger);
+    const ModelChange change{.whole = ModelMotion{.scale = 1.5}, .parts = {}};
+    const std::vector<JournalEntry> entries{JournalEntry(square(SurfaceMapping::project))};
+    const StrokeFit grown = compare_fit(entries, follow_model(entries, change, *former.query),
+                                        [](const std::string&) { return 0.0; }, {*former.query, query, change})
+                                .at(0);
+    EXPECT_TRUE(grown.followed);
+    EXPECT_TRUE(mismatch_reason(grown).empty()) << mismatch_reason(grown).text();
+    EXPECT_LT(grown.slid.value_or(1), 1e-6);
     // A hole of 12 mm about the middle of an edge of 20 mm; triangles of 3 mm make it ragged.
     const StrokeFit hole =
         fit_on(with_hole(*sheet({}, kSmall).mesh, Vec3(0.01, 0, 0), 6e-3), square(SurfaceMapping::project));

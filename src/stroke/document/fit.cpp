@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/system/interrupt.h"
 #include "core/system/parallel.h"
 #include "stroke/drawing/follow_model.h"
 #include "stroke/gesture/hand.h"
@@ -19,13 +20,14 @@ constexpr double kMost = 0.5;          // of the path: then no depth is worth te
 constexpr double kDepthPart = 0.5;     // of the depth, that it may change by
 constexpr double kLeastChange = 2e-4;  // metres of depth that nobody sees
 constexpr double kLeastMove = 1e-3,
-                 kMovePart = 0.01;   // metres, and part of the path, that a place may move by
-constexpr double kStretch = 1.25;    // times as long, or short
-constexpr double kPiece = 5e-3;      // metres of path that are measured together
-constexpr double kTooSmall = 0.25;   // times as large as the former model: a unit that was mistaken is less
-constexpr double kTouch = 1e-4;      // metres that a single touch counts as
-constexpr double kRingStep = 2e-3;   // metres between points of a ring
-constexpr double kRingPoints = 200;  // of an area, about; longer rings have them farther apart
+                 kMovePart = 0.01;         // metres, and part of the path, that a place may move by
+constexpr double kStretch = 1.25;          // times as long, or short
+constexpr double kPiece = 5e-3;            // metres of path that are measured together
+constexpr double kTooSmall = 0.25;         // times as large as the former model: a unit that was mistaken is less
+constexpr double kTouch = 1e-4;            // metres that a single touch counts as
+constexpr double kRingStep = 2e-3;         // metres between points of a ring
+constexpr double kAllRingPoints = 20'000;  // of all areas; where there are more, they are farther apart
+constexpr double kLeastPoints = 16;        // of an area
 
 bool is_painted(const JournalEntry& entry) {
     return entry.as<PaintStroke>() && !entry.hidden && !on_palette(entry);
@@ -100,6 +102,7 @@ void add_places(StrokeFit& fit, const std::vector<Place>& places, const std::opt
 struct ComparedStroke {
     const JournalEntry &entry, &followed;
     double length = 0;                  // of the tuft on the former model, metres
+    double points = 0;                  // of the rings of an area, about
     std::optional<ModelMotion> motion;  // of the model under it
     double scale() const { return motion ? motion->scale : 1; }
 };
@@ -133,15 +136,64 @@ StrokeFit fit_in_space(const ComparedStroke& stroke, const Revision& r) {
     return fit;
 }
 
-StrokeSamples flat_trace(const JournalEntry& entry) {
-    if (const FlatArea* area = area_of(entry)) return ring_samples(*area);
-    const PaintStroke& s = *entry.as<PaintStroke>();
-    return steady(s.trace, s.settings);
+/// A point of an area's rings.
+struct RingPoint {
+    std::size_t ring = 0, edge = 0;
+    double part = 0;  // of the edge
+};
+
+/// Points so many metres apart, or farther where that would be more than about `most`.
+std::vector<RingPoint> ring_points(const FlatArea& area, double most) {
+    const auto length_of = [](const std::vector<Vec2>& ring, std::size_t i) {
+        return glm::distance(ring[i], ring[(i + 1) % ring.size()]);
+    };
+    double whole = 0;
+    for (const std::vector<Vec2>& ring : area.rings)
+        for (std::size_t i = 0; i < ring.size(); ++i) whole += length_of(ring, i);
+    const double step = std::max(kRingStep, whole / most);
+    std::vector<RingPoint> points;
+    for (std::size_t r = 0; r < area.rings.size(); ++r) {
+        const std::vector<Vec2>& ring = area.rings[r];
+        double left = 0;  // to the next point
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const double length = length_of(ring, i);
+            double at = left;
+            for (; at < length; at += step) points.push_back({r, i, at / length});
+            left = at - length;
+        }
+        if (!ring.empty()) points.push_back({r, ring.size() - 1, 1});
+    }
+    return points;
+}
+
+StrokeSamples trace_through(const FlatArea& area, const std::vector<RingPoint>& points) {
+    StrokeSamples trace{.flat = true, .placement = area.placement};
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const std::vector<Vec2>& ring = area.rings[points[k].ring];
+        const Vec2 p = glm::mix(ring[points[k].edge], ring[(points[k].edge + 1) % ring.size()], points[k].part);
+        const bool is_first = k == 0 || points[k - 1].ring != points[k].ring;
+        trace.samples.push_back(
+            {.time = static_cast<double>(k), .position = Vec3(p, 0), .pressure = is_first ? 0.0 : 1.0});
+    }
+    return trace;
 }
 
 StrokeFit fit_flat(const ComparedStroke& stroke, const Revision& r) {
-    StrokeFit fit{.stroke = stroke.entry.id, .area = area_of(stroke.entry) != nullptr, .flat = true};
-    const StrokeSamples trace = flat_trace(stroke.entry), followed = flat_trace(stroke.followed);
+    const FlatArea* area = area_of(stroke.entry);
+    StrokeFit fit{.stroke = stroke.entry.id, .area = area != nullptr, .flat = true};
+    StrokeSamples trace, followed;
+    if (area) {
+        const std::vector<RingPoint> points = ring_points(*area, stroke.points);
+        trace = trace_through(*area, points);
+        followed = trace_through(*area_of(stroke.followed), points);
+    } else {
+        const auto steadied = [](const JournalEntry& entry) {
+            const PaintStroke& s = *entry.as<PaintStroke>();
+            return steady(s.trace, s.settings);
+        };
+        trace = steadied(stroke.entry);
+        followed = steadied(stroke.followed);
+    }
     SurfaceTrace was = map_to_surface(r.former, trace), now = map_to_surface(r.revised, followed);
     leave_other_sheets(r.former, trace, was);
     leave_other_sheets(r.revised, followed, now);
@@ -159,12 +211,15 @@ StrokeFit fit_flat(const ComparedStroke& stroke, const Revision& r) {
     return fit;
 }
 
-/// Whether a stroke lies elsewhere than before.
+/// Whether a stroke or an area lies elsewhere than before, or is larger.
 bool is_followed(const JournalEntry& entry, const JournalEntry& followed) {
-    if (const FlatArea* area = area_of(entry)) return !(area->placement == area_of(followed)->placement);
+    if (const FlatArea* area = area_of(entry)) {
+        const FlatArea& now = *area_of(followed);
+        return !(area->placement == now.placement) || area->rings != now.rings;
+    }
     const StrokeSamples &a = samples_of(entry), &b = samples_of(followed);
-    if (a.flat) return !(a.placement == b.placement);
-    return !a.samples.empty() && a.samples[0].position != b.samples[0].position;
+    if (a.flat && !(a.placement == b.placement)) return true;
+    return !std::ranges::equal(a.samples, b.samples, {}, &StrokeSample::position, &StrokeSample::position);
 }
 
 /// The brush of one of these whose tuft is longer than `most`, and that length.
@@ -216,50 +271,31 @@ Message size_fault(const std::vector<JournalEntry>& entries, const std::function
         millimetres(across), millimetres(drawing.diagonal()), longer->first, millimetres(longer->second));
 }
 
-StrokeSamples ring_samples(const FlatArea& area) {
-    StrokeSamples trace{.flat = true, .placement = area.placement};
-    double whole = 0;
-    for (const std::vector<Vec2>& ring : area.rings)
-        for (std::size_t i = 0; i < ring.size(); ++i) whole += glm::distance(ring[i], ring[(i + 1) % ring.size()]);
-    const double step = std::max(kRingStep, whole / kRingPoints);
-    double time = 0;
-    const auto add = [&](const Vec2& p, double pressure) {
-        trace.samples.push_back({.time = time++, .position = Vec3(p, 0), .pressure = pressure});
-    };
-    for (const std::vector<Vec2>& ring : area.rings) {
-        if (ring.empty()) continue;
-        add(ring[0], 0);
-        double left = step;  // to the next point
-        for (std::size_t i = 0; i < ring.size(); ++i) {
-            const Vec2 a = ring[i], b = ring[(i + 1) % ring.size()];
-            const double length = glm::distance(a, b);
-            double at = 0;
-            for (; length - at >= left; left = step) add(a + (at += left) / length * (b - a), 1);
-            left -= length - at;
-        }
-        add(ring[0], 1);
-    }
-    return trace;
+StrokeSamples ring_samples(const FlatArea& area, double most) {
+    return trace_through(area, ring_points(area, most));
 }
 
 std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries, const std::vector<JournalEntry>& followed,
                                    const std::function<double(const std::string&)>& length_of,
                                    const Revision& revision) {
+    const auto n_areas = std::ranges::count_if(entries, [](const JournalEntry& e) { return area_of(e) != nullptr; });
+    const double points = std::clamp(kAllRingPoints / std::max(1.0, double(n_areas)), kLeastPoints, kMostRingPoints);
     std::vector<ComparedStroke> compared;
     for (std::size_t i = 0; i < entries.size(); ++i)  // here: presets are loaded one at a time
         if (is_painted(entries[i]))
-            compared.push_back({entries[i], followed[i], length_of(brush_of(entries[i])), {}});
+            compared.push_back({entries[i], followed[i], length_of(brush_of(entries[i])), 0, {}});
         else if (area_of(entries[i]))
-            compared.push_back({entries[i], followed[i], 0, {}});
+            compared.push_back({entries[i], followed[i], 0, points, {}});
     std::vector<StrokeFit> fits(compared.size());
     parallel_for(compared.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
+            check_interrupt();
             ComparedStroke& stroke = compared[i];
             const FlatArea* area = area_of(stroke.entry);
             const bool flat = area || samples_of(stroke.entry).flat;
             if (!revision.change.none())
-                stroke.motion =
-                    motion_of(area ? ring_samples(*area) : samples_of(stroke.entry), revision.change, revision.former);
+                stroke.motion = motion_of(area ? ring_samples(*area, points) : samples_of(stroke.entry),
+                                          revision.change, revision.former);
             fits[i] = flat ? fit_flat(stroke, revision) : fit_in_space(stroke, revision);
             fits[i].followed = is_followed(stroke.entry, stroke.followed);
         }

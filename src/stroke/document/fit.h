@@ -65,16 +65,17 @@ struct Revision {
 /// Compares two models along strokes: the entries on the former one, and `followed`, what became of them
 /// (`follow_model`; the same entries where they stay), on the revised one. At each sample of a stroke in space, rays
 /// from the ferrule's mouth along its axis, one tuft length to both sides, find the surfaces; flat strokes are mapped
-/// onto both models, and so are the rings of areas (`ring_samples`). `length_of` returns the tuft length of a brush,
-/// metres. Hidden entries and those on the palette are left out. Cost: two rays per sample, or two mappings.
-/// Precondition: as many followed as entries.
+/// onto both models, and so are the rings of areas (`ring_samples`, some 20,000 points in all). `length_of` returns the
+/// tuft length of a brush, metres. Hidden entries and those on the palette are left out. Cost: two rays per sample, or
+/// two mappings. Precondition: as many followed as entries.
 std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries, const std::vector<JournalEntry>& followed,
                                    const std::function<double(const std::string& brush)>& length_of,
                                    const Revision& revision);
 
-/// Returns the rings of an area as a flat trace, points at most 2 mm apart, farther where they are longer than 0.4 m.
+/// Returns the rings of an area as a flat trace, points 2 mm apart, farther where that would be more than about `most`.
 /// Pressure is 0 at the first point of each ring, else 1.
-StrokeSamples ring_samples(const FlatArea& area);
+inline constexpr double kMostRingPoints = 200;
+StrokeSamples ring_samples(const FlatArea& area, double most = kMostRingPoints);
 
 /// Returns why a stroke no longer fits, as a sentence for people; empty where it fits. It does not fit if
 /// - more than 10 % of its path have no ink, or
