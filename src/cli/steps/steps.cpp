@@ -101,7 +101,7 @@ void tell_sides(const mesh::RepairReport& repairs, Console& console) {
 void tell_left_aside(const fs::path& path, const FileReading& how, Console& console) {
     if (!how.unit.empty() && io::metres_per_unit_of(path))
         console.note("--unit is left aside: " + path.filename().string() +
-                     " is read in the unit that it states (OBJ, PLY, STL and OFF files state none)");
+                     " is read in the unit that it states (OBJ, PLY, STL, OFF and VRML files state none)");
     if (!how.up.empty() && io::has_fixed_up_axis(path))
         console.note("--up is left aside: " + path.filename().string() + " is read with the axes that it states");
 }

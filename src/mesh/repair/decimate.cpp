@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cfloat>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <numeric>
@@ -187,6 +188,7 @@ struct LostPart {
     std::uint32_t part = 0;  ///< by the smallest of its vertices
     double size = 0;         ///< metres, of the box round it
     std::vector<std::uint32_t> corners;
+    std::map<int, std::vector<std::uint32_t>> reduced;  ///< by level, see `reduced_to`
 };
 
 /// The parts of which nothing is in `left` nor in `known` though they are larger than `least`.
@@ -206,42 +208,46 @@ std::vector<LostPart> lost_parts(const Wedges& wedges, const Simplifier& simplif
     return parts;
 }
 
+constexpr int kLevels = 3, kTries = 8;  // of errors, each a quarter of the one before
+
 /// A part by itself, with fewer triangles where it has any then: a thin plate becomes two sides back to back when its
-/// walls collapse, and these go as fins.
-std::vector<std::uint32_t> reduced(const LostPart& part, const Simplifier& simplify, double error) {
-    constexpr int kTries = 8;
-    for (int i = 0; i < kTries; ++i, error *= 0.25)
-        if (std::vector<std::uint32_t> own = simplify.of_part(part.corners, 1, error); !own.empty()) return own;
-    return part.corners;
+/// walls collapse, and these go as fins. `coarsest`: error of level 0, metres.
+const std::vector<std::uint32_t>& reduced_to(int level, LostPart& part, const Simplifier& simplify, double coarsest) {
+    const auto [at, is_new] = part.reduced.try_emplace(level);
+    if (!is_new) return at->second;
+    double error = coarsest * std::pow(0.25, level);
+    for (int i = 0; i < kTries && at->second.empty(); ++i, error *= 0.25)
+        at->second = simplify.of_part(part.corners, 1, error);
+    if (at->second.empty()) at->second = part.corners;
+    return at->second;
 }
 
 /// What lost parts keep of at most `n_triangles` (0: of any number): all of them, as fine as that allows, else the
-/// largest. `error`: metres, 0: as fits each part's size.
+/// largest. `error`: metres, 0: as fits each part's size. Sorts the parts; empty ones keep nothing.
 std::vector<std::vector<std::uint32_t>> kept_of(std::vector<LostPart>& parts, const Simplifier& simplify,
                                                 std::size_t n_triangles, double error) {
+    constexpr double kOfSize = 0.16;  // of a part: what may move of it at level 0 where no distance is given
     std::sort(parts.begin(), parts.end(),
               [](const LostPart& a, const LostPart& b) { return std::tie(b.size, a.part) < std::tie(a.size, b.part); });
-    std::vector<std::vector<std::uint32_t>> kept;
-    std::size_t n_corners = 0;
-    for (const double of_error : {0.25, 1.0, 4.0}) {
-        constexpr double kOfSize = 0.04;  // of a part: what may move where no distance is given
-        if (error > 0 && of_error > 1) break;
-        kept.clear();
-        n_corners = 0;
-        for (const LostPart& part : parts) {
-            kept.push_back(reduced(part, simplify, of_error * (error > 0 ? error : kOfSize * part.size)));
-            n_corners += kept.back().size();
-        }
-        if (n_triangles == 0 || n_corners <= 3 * n_triangles) return kept;
+    const auto coarsest = [&](const LostPart& part) { return error > 0 ? error : kOfSize * part.size; };
+    // Two triangles are the least that a part can have: of very many only the largest are looked at.
+    const std::size_t n = n_triangles > 0 ? std::min(parts.size(), n_triangles / 2 + 1) : parts.size();
+    const std::size_t room = n_triangles > 0 ? 3 * n_triangles : static_cast<std::size_t>(-1);
+    std::vector<std::vector<std::uint32_t>> kept(parts.size());
+    int level = error > 0 ? 1 : kLevels - 1;
+    for (; level > 0; --level) {
+        std::size_t n_corners = 0;
+        for (std::size_t i = 0; i < n && n_corners <= room; ++i)
+            n_corners += reduced_to(level, parts[i], simplify, coarsest(parts[i])).size();
+        if (n == parts.size() && n_corners <= room) break;
     }
-    n_corners = 0;
-    bool is_full = false;
-    for (std::vector<std::uint32_t>& corners : kept) {
-        is_full |= corners.size() <= 3 * n_triangles && n_corners + corners.size() > 3 * n_triangles;
-        if (is_full || corners.size() > 3 * n_triangles)
-            corners.clear();
-        else
-            n_corners += corners.size();
+    std::size_t n_corners = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::vector<std::uint32_t>& corners = reduced_to(level, parts[i], simplify, coarsest(parts[i]));
+        if (corners.size() > room) continue;  // it alone
+        if (n_corners + corners.size() > room) break;
+        n_corners += corners.size();
+        kept[i] = corners;
     }
     return kept;
 }

@@ -19,8 +19,9 @@ struct DecimateOptions {
 /// their edges collapse only along them. Collapsing ends at the first limit that is reached, or where no edge is left
 /// that may collapse. Points are in metres; materials and parts are not kept. Throws `Error` when both limits are 0.
 /// Cost: about 1 s and 0.3 GB for a million triangles.
-/// A connected part wider than twice `error` stays, thin ones too. Where a number of triangles is wanted, the largest of
-/// those that would go stay, within half of the triangles; no larger part goes for them.
+/// A connected part wider than twice `error` stays, thin ones too. Where a number of triangles is wanted, the largest
+/// of those that would go stay, within half of the triangles, but for one that needs more than that alone. What they
+/// take is taken from the rest, which is collapsed anew, at most six times, as long as further parts go by that.
 PolygonSoup decimate(const TriangleMesh& mesh, const DecimateOptions& options);
 
 }  // namespace tuft::mesh
