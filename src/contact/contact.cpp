@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "contact/columns.h"
 #include "contact/node_contact.h"
 #include "contact/obb.h"
 #include "contact/planes_at_rest.h"
@@ -27,6 +28,7 @@ struct Step {
     double near = 0;          // metres: farther than this nothing of the tuft can touch
     NodeContact root;         // of the ferrule's mouth
     Recycled<Vec3> nodes;     // predicted, at `pose`
+    bool foam = false;        // a sponge
     bool tip_jumped = false;  // the tip went so far that its hair did not slide there
 };
 
@@ -63,6 +65,7 @@ Recycled<Vec3> section_centres(const brush::Branch& branch) {
 /// list, start from the trunk. `known`: of all spines.
 Recycled<NodeContact> find_tuft_contacts(const Step& w, const brush::TuftBend& tuft, std::span<const Vec3> nodes,
                                          const KnownContacts& known = {}) {
+    if (w.foam) return find_column_contacts(w.surface, w.pose, w.root, nodes, w.search);
     Recycled<NodeContact> out;
     for (const brush::Spine& spine : tuft.spines) {
         const std::size_t first = out.size(), count = spine.rest_radius.size();
@@ -309,7 +312,8 @@ Recycled<Recycled<NodeContact>> find_section_contacts(const Step& w, const brush
     if (tuft.branches.size() == 1) {
         const std::size_t count = tuft.branches[0].sections.size();
         if (trunk.size() != count && nodes.size() >= count)
-            trunk = find_chain_contacts(w.surface, w.root, nodes.first(count), w.near, w.search);
+            trunk = w.foam ? find_column_contacts(w.surface, w.pose, w.root, nodes.first(count), w.search)
+                           : find_chain_contacts(w.surface, w.root, nodes.first(count), w.near, w.search);
         out.push_back(std::move(trunk));
         return out;
     }
@@ -539,6 +543,7 @@ Result take_step(brush::Tuft& tuft, const mesh::SurfaceQuery& surface, Memory& m
     const bool near = overlap(obb_of(nodes, thick + options.tolerance), obb_of(surface.mesh().bounds));
 
     Step w{surface, input.pose, options, {}, preset.radius, ferrule_pad(preset), 0, {}, std::move(nodes)};
+    w.foam = brush::is_foam(preset);
     w.search.smooth = &memory.smooth;
     w.search.reach = 2 * preset.length + thick + preset.width;
     w.near = 1.2 * preset.radius + options.tolerance + 1e-3;
@@ -548,6 +553,7 @@ Result take_step(brush::Tuft& tuft, const mesh::SurfaceQuery& surface, Memory& m
         const bool lowers = result.inside > 0 && !memory.touching && !input.lowers;
         if (lowers) lower_tuft(tuft, w, memory);
         if (lowers || w.pose.position != input.pose.position) w.nodes = brush::predicted_nodes(tuft, w.pose);
+        if (w.foam) move_to_columns(w.surface, w.pose, w.root, preset.length, w.nodes);
     }
     const bool reachable =
         near && w.root.triangle != kNone && w.root.height < preset.length + w.near + 0.5 * preset.width;
