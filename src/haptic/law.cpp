@@ -101,14 +101,17 @@ double gone_against(const LawState& s, const Vec3& jump, const Vec3& moved, cons
 }
 
 /// Step 2.
-Vec3 faded(const LawOptions& options, LawState& s, const Vec3& g, const Vec3& moved, const Vec3& root) {
+Vec3 faded(const LawOptions& options, LawState& s, const Vec3& g, const Vec3& root) {
     const Vec3 jump = g - s.fade.force;
     const double size = glm::length(jump), old = glm::length(s.fade.offset);
+    s.fade.offset = old > kFadeRate ? s.fade.offset * (1 - kFadeRate / old) : Vec3{0};
+    if (size == 0 && root == s.fade.root) return g + s.fade.offset;  // no new answer
+    const Vec3 moved = s.arm.position - s.fade.arm;
     const double allowed = std::min(options.limits.max_stiffness / options.scale, kFadeStiffness) * glm::length(moved) +
                            kRootStiffness * gone_against(s, jump, moved, root) + kFadeFree;
-    s.fade.root = root;
-    s.fade.offset = old > kFadeRate ? s.fade.offset * (1 - kFadeRate / old) : Vec3{0};
     if (size > allowed) s.fade.offset -= jump * (1 - allowed / size);
+    s.fade.arm = s.arm.position;
+    s.fade.root = root;
     s.fade.force = g;
     return g + s.fade.offset;
 }
@@ -156,12 +159,12 @@ const Vec3& sent_before(const LawState& s, std::size_t i) {
 }
 
 /// The force that acted in the last period, N: of those with each of two delays, which are not known to a period, the
-/// one that took more energy from the tank.
-const Vec3& acted_over(const LawState& s, const Vec3& moved) {
+/// one that took more energy from the tank, where what is measured moved by `counted`.
+const Vec3& acted_over(const LawState& s, const Vec3& counted) {
     const Vec3& acted = sent_before(s, s.sent.delay + 1);
     if (s.sent.delay == 0) return acted;
     const Vec3& later = sent_before(s, s.sent.delay + 2);
-    return glm::dot(later, moved) > glm::dot(acted, moved) ? later : acted;
+    return glm::dot(later, counted) > glm::dot(acted, counted) ? later : acted;
 }
 
 /// f_r, N: what the arm's friction takes back from a force that moves it. Only with restore, which gives the hand more
@@ -179,7 +182,8 @@ double along_axes(const LawInput& in, const Vec3& v) {
 /// Step 6 before the force of this period: what the last one has given over the path `moved` of x from x_c + `d`.
 void settle_tank(const LawOptions& options, LawState& s, const LawInput& in, const Vec3& moved, const Vec3& d) {
     const double count = options.limits.count * options.scale;
-    const Vec3 acted = acted_over(s, moved);
+    // acted · moved + (acted − before) · d, and what the next period adds of it: acted · (moved + d − d⁺).
+    const Vec3 acted = acted_over(s, moved + d - (s.arm.position - s.arm.measured));
     // What counts stir up in a force goes against their error and takes no energy: it is smoothed out.
     const Vec3 change = kCountedShare * (acted - s.tank.counted_force);
     s.tank.energy -=
@@ -314,7 +318,8 @@ Vec3 turn_between(const Quat& before, const Quat& now) {
 void restart_law(LawState& state, const Vec3& arm, const Quat& rotation) {
     state = {};
     state.started = true;
-    state.arm.measured = state.arm.position = state.root.position = state.fade.root = state.tank.played = arm;
+    state.arm.measured = state.arm.position = state.root.position = state.fade.root = state.fade.arm =
+        state.tank.played = arm;
     state.arm.rotation = rotation;
     state.tank.energy = kTankKeeps;
 }
@@ -330,7 +335,7 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
 
     const double gain = options.gain * in.trust;
     const Vec3 hair = in.hair ? gain * in.hair->force : Vec3{0};
-    const Vec3 g = faded(options, s, hair, moved, in.hair ? in.hair->pose.position : s.fade.root);
+    const Vec3 g = faded(options, s, hair, in.hair ? in.hair->pose.position : s.fade.root);
     const Vec3 pull = K * (s.arm.position + s.root.restored - s.root.position) + B * s.arm.velocity + g;
     Vec3 velocity = (m * s.root.velocity + T * pull) / (m + T * (K * T + B));
     Vec3 root = s.root.position + T * velocity;

@@ -27,7 +27,7 @@
 ///    |o| falls by 0.06 N a period; g += o. r is how far the root went by itself against the jump: the lesser of its
 ///    way and its way relative to the arm along −jump, at least 0. Hair that is a spring H answers Δy by −H Δy, and
 ///    |H Δy|² <= h Δy · H Δy where it is no stiffer than h: r 2 m/T² is what hair does that is half as stiff as step 3
-///    bears. Late, it would make the root swing.
+///    bears. Late, it would make the root swing. Δx and Δy are those since the answer before, where answers are late.
 /// 3. Coupling, implicit [Colgate1995], [Adams1999]:
 ///
 ///        v⁺ = (m v + T (K (x + s − y) + B v_x + g)) / (m + T (K T + B)),   y += T v⁺,
@@ -108,6 +108,7 @@ struct Fade {
     Vec3 force{0};   ///< g before the fade, N
     Vec3 offset{0};  ///< o, N
     Vec3 root{0};    ///< m, where that force was solved
+    Vec3 arm{0};     ///< m, x when it came
 };
 
 /// The forces of the last periods, N.
