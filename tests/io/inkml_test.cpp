@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <filesystem>
@@ -575,6 +576,25 @@ TEST(Inkml, AnyTruncationOrGarbledByteIsAnErrorOrAFile) {
         for (int k = 0; k < 3; ++k)
             garbled[hash_bits(i, 2 * k) % garbled.size()] = static_cast<char>(hash_bits(i, 2 * k + 1) % 128);
         survives(garbled);
+    }
+}
+
+// A make leans where no sample has a tilt (`stroke::lean_holder`), so a holder that is held upright says so by one that
+// is too small to see. Rounded to nothing it would lean again. A trace without any stays without.
+TEST(Inkml, AHolderThatIsStatedUprightStaysSo) {
+    RecordedStroke stated;
+    for (int i = 0; i < 5; ++i)
+        stated.samples.push_back({.time = 0.1 * i, .position = {1e-3 * i, 0, 0}, .pressure = 0.5});
+    const RecordedStroke silent = stated;
+    stated.samples.front().tilt.x = 1e-9;
+    const auto leans = [](const stroke::StrokeSample& s) { return s.tilt != Vec2{0}; };
+    for (const Digits digits : {Digits::exact, Digits::rounded}) {
+        const std::vector<RecordedStroke> back =
+            parse_inkml(inkml_text(std::vector{stated, silent}, {}, digits), "test.inkml");
+        ASSERT_EQ(back.size(), 2u);
+        EXPECT_TRUE(std::ranges::any_of(back[0].samples, leans));
+        for (const stroke::StrokeSample& s : back[0].samples) EXPECT_LT(glm::length(s.tilt), 1e-4);  // as `Digits` says
+        EXPECT_TRUE(std::ranges::none_of(back[1].samples, leans));
     }
 }
 

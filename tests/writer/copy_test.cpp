@@ -96,6 +96,39 @@ TEST(Copy, SpecksPinholesAndARubbingGiveTheSameInk) {
     EXPECT_GT(overlap(ink, ink_of(rubbing, "photo")), 0.95);
 }
 
+/// Two colours of light, 0–1, laid over each other on warm paper in that light.
+io::Image8 in_colour(const io::Image8& black, const io::Image8& seal, const Vec3& ink, const Vec3& other) {
+    io::Image8 image{.width = black.width, .height = black.height, .channels = 3, .pixels = {}};
+    constexpr Vec3 kPaper{1, 0.95, 0.85};
+    for (std::size_t k = 0; k < black.pixels.size(); ++k) {
+        const double light = 1 - 0.55 * static_cast<double>(k % std::size_t(black.width)) / black.width;
+        for (int c = 0; c < 3; ++c) {
+            const auto through = [&](const io::Image8& of, double own) {
+                return std::pow(own, std::clamp((0.9 - of.pixels[k] / 255.0 / light) / 0.7, 0.0, 1.0));
+            };
+            const double v = 240 * light * kPaper[c] * through(black, ink[c]) * through(seal, other[c]);
+            image.pixels.push_back(static_cast<std::uint8_t>(v));
+        }
+    }
+    return image;
+}
+
+// A square seal beside and over the strokes. Of the ink alone, an edge may be half a cell off: 1 % of bars of 28 cells.
+TEST(Copy, ASealOfAnotherColourIsLeftOut) {
+    const Vec3 black{0.1, 0.1, 0.1}, red{0.8, 0.17, 0.15};
+    const std::vector<Bar> seal{{{262, 262}, {338, 262}, 6}, {{338, 262}, {338, 338}, 6}, {{338, 338}, {262, 338}, 6},
+                                {{262, 338}, {262, 262}, 6}, {{300, 270}, {300, 330}, 6}, {{190, 300}, {210, 300}, 10}};
+    const io::Image8 none = photo_of({});
+    const PictureInk alone = picture_ink(in_colour(photo_of(kTen), none, black, red), "photo");
+    EXPECT_EQ(alone.other_colour, 0);
+    const PictureInk sealed = picture_ink(in_colour(photo_of(kTen), photo_of(seal), black, red), "photo");
+    EXPECT_GT(sealed.other_colour, 0.05);
+    EXPECT_GT(overlap(alone.cells, sealed.cells), 0.98);
+    // Writing in red is ink, and a small note in black beside it is what is left out.
+    const PictureInk red_ink = picture_ink(in_colour(photo_of(kTen), photo_of({seal[4]}), red, black), "photo");
+    EXPECT_GT(overlap(alone.cells, red_ink.cells), 0.97);
+}
+
 TEST(Copy, ABoxIsThreeStrokes) {
     const Glyph g = copied(photo_of(kMouth));
     ASSERT_EQ(g.strokes.size(), 3u);

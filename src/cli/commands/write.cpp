@@ -30,8 +30,12 @@ std::string report_copy(const writer::CopiedPicture& copy, const Write& a) {
         const std::string svg = writer::numbered_svg(copy.ink.cells, copy.skeleton, copy.order);
         write_file(a.numbered, svg.data(), svg.size());
     }
-    return fmt::format("{} strokes of {} pieces; --order \"{}\"", copy.order.size(), copy.skeleton.pieces.size(),
-                       writer::order_text(copy.order));
+    std::string out = fmt::format("{} strokes of {} pieces; --order \"{}\"", copy.order.size(),
+                                  copy.skeleton.pieces.size(), writer::order_text(copy.order));
+    if (copy.ink.other_colour > 0)
+        out += fmt::format("; {:.3g} % of what is marked has another colour than the ink and was left out",
+                           100 * copy.ink.other_colour);
+    return out;
 }
 
 /// A text and what is to be said of it.

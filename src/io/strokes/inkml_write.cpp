@@ -142,6 +142,18 @@ void add_sample(std::string& out, const stroke::StrokeSample& s, Kind kind, cons
         for (const double q : {s.rotation.w, s.rotation.x, s.rotation.y, s.rotation.z}) add(q, 10);
 }
 
+constexpr double kLeastLean = 1e-3 * kDegree;  // that three places of a degree keep
+
+/// Whether a holder leans less than the digits tell: a make leans where all samples say 0 (`stroke::lean_holder`).
+bool is_stated_upright(const RecordedStroke& trace, const Style& style) {
+    bool leans = false;
+    for (const stroke::StrokeSample& s : trace.samples) {
+        if (std::max(std::abs(s.tilt.x), std::abs(s.tilt.y)) >= 0.5 * kLeastLean) return false;
+        leans = leans || s.tilt != Vec2{0};
+    }
+    return leans && !style.exact && trace.flat;
+}
+
 std::string preparation_text(const stroke::Preparation& preparation, const Style& style) {
     std::string attributes, text;
     std::visit(Overloaded{[&](const stroke::BrushAction& action) {
@@ -171,11 +183,14 @@ void add_trace(std::string& out, const RecordedStroke& trace, Kind kind, const S
         add_annotation(out, "      ", "stencil", stencil);
     }
     if (trace.seed) add_annotation(out, "      ", "seed", std::to_string(trace.seed));
+    const bool upright = is_stated_upright(trace, style);
     const double start = trace.samples.empty() ? 0 : trace.samples.front().time;
     if (style.exact && (start != 0 || std::signbit(start))) add_annotation(out, "      ", "clock", "kept");
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
         if (i) out += i % 8 ? ", " : ",\n";
-        add_sample(out, trace.samples[i], kind, style);
+        stroke::StrokeSample sample = trace.samples[i];
+        if (upright && i == 0) sample.tilt.x = kLeastLean;
+        add_sample(out, sample, kind, style);
     }
     out += "\n    </trace>\n";
 }

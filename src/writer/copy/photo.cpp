@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "core/error.h"
 
@@ -23,6 +24,9 @@ constexpr double kAlongBorder = 0.1;     // of the border
 constexpr double kSpeckOfInk = 1.0 / 400;
 constexpr double kSpeck = 1.0 / 3, kHole = 1.0 / 6;  // of the square of a stroke's width
 constexpr double kCell = 2;                          // units
+constexpr double kDarkest = 0.02;                    // of the paper's light that is told apart
+constexpr double kMarked = 0.5;                      // density of all channels from which a pixel has a colour
+constexpr double kOtherColour = 0.35;                // radians between the densities of two colours; of vermilion 0.54
 
 /// Numbers of pixels, row 0 at the top.
 struct Raster {
@@ -48,13 +52,16 @@ int reduction_of(const io::Image8& p) {
     return std::max(1, (std::max(p.width, p.height) + kLongest - 1) / kLongest);
 }
 
-/// Luma of Rec. 709 over white, 0–1, as a mean over squares of pixels where the picture is large.
-Raster grey_of(const io::Image8& p) {
+constexpr Vec3 kLuma{0.2126, 0.7152, 0.0722};  // of Rec. 709
+
+/// Light over white, 0–1, as a mean over squares of pixels where the picture is large. `weights`: of the channels of a
+/// picture in colour.
+Raster light_of(const io::Image8& p, const Vec3& weights) {
     const int n = reduction_of(p);
     Raster out(p.width / n, p.height / n);
     const auto pixel = [&](int x, int y) {
         const std::uint8_t* c = &p.pixels[(std::size_t(y) * p.width + x) * p.channels];
-        const double light = p.channels < 3 ? c[0] : 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+        const double light = p.channels < 3 ? c[0] : weights.x * c[0] + weights.y * c[1] + weights.z * c[2];
         const double alpha = p.channels == 2 ? c[1] : p.channels == 4 ? c[3] : 255;
         return 1 + alpha / 255 * (light / 255 - 1);
     };
@@ -183,6 +190,66 @@ class Paper {
     int size_;
     Raster blocks_;
 };
+
+/// Densities of the inks on a picture in colour, −ln of its light over that of the paper about it. [pixels]
+std::vector<Vec3> densities_of(const io::Image8& p) {
+    std::vector<Vec3> out;
+    for (int c = 0; c < 3; ++c) {
+        Vec3 weights{0};
+        weights[c] = 1;
+        const Raster light = light_of(p, weights), flat = Paper(light).flat(light);
+        out.resize(flat.value.size());
+        for (std::size_t k = 0; k < out.size(); ++k)
+            out[k][c] = -std::log(std::clamp(static_cast<double>(flat.value[k]), kDarkest, 1.0));
+    }
+    return out;
+}
+
+/// The direction of the densities of most ink: for each channel the median, weighed by the density.
+Vec3 most_ink(const std::vector<Vec3>& marked) {
+    Vec3 out{0};
+    double all = 0;
+    for (const Vec3& d : marked) all += glm::length(d);
+    for (int c = 0; c < 3; ++c) {
+        std::array<double, kBins + 1> weight{};
+        for (const Vec3& d : marked) weight[static_cast<std::size_t>(d[c] / glm::length(d) * kBins)] += glm::length(d);
+        std::size_t bin = 0;
+        for (double below = weight[0]; below < 0.5 * all; below += weight[++bin]) {
+        }
+        out[c] = (static_cast<double>(bin) + 0.5) / kBins;
+    }
+    return glm::normalize(out);
+}
+
+/// The light of a picture in colour without what is of another colour than most of its ink, such as a seal. Densities
+/// add where inks lie over each other: d = a ink + b other, a and b at least 0, and the light is that of a alone.
+/// Nothing where all is of one colour. `part`: of the marked pixels, those of another colour.
+std::optional<Raster> without_other_colours(const io::Image8& p, double& part) {
+    if (p.channels < 3) return std::nullopt;
+    const std::vector<Vec3> densities = densities_of(p);
+    std::vector<Vec3> marked;
+    for (const Vec3& d : densities)
+        if (glm::length(d) > kMarked) marked.push_back(d);
+    if (marked.empty()) return std::nullopt;
+    const Vec3 ink = most_ink(marked);
+    Vec3 other{0};
+    std::size_t n = 0;
+    for (const Vec3& d : marked)
+        if (glm::dot(d, ink) < std::cos(kOtherColour) * glm::length(d)) other += d, ++n;
+    if (static_cast<double>(n) < kSpeckOfInk * static_cast<double>(marked.size())) return std::nullopt;
+    other = glm::normalize(other);
+    const double both = glm::dot(ink, other);
+    if (both > std::cos(kOtherColour)) return std::nullopt;  // several colours about that of the ink
+    part = static_cast<double>(n) / static_cast<double>(marked.size());
+    const int reduction = reduction_of(p);
+    Raster out(p.width / reduction, p.height / reduction);
+    for (std::size_t k = 0; k < densities.size(); ++k) {
+        const double of_ink = glm::dot(densities[k], ink), of_other = glm::dot(densities[k], other);
+        const double a = of_other > both * of_ink ? (of_ink - both * of_other) / (1 - both * both) : of_ink;
+        out.value[k] = static_cast<float>(std::exp(-std::max(a, 0.0) * (ink.x + ink.y + ink.z) / 3));
+    }
+    return out;
+}
 
 /// A connected part of cells.
 struct Part {
@@ -324,9 +391,12 @@ std::pair<Vec2, Vec2> keep_character(Raster& flat, double threshold) {
 PictureInk picture_ink(const io::Image8& picture, const std::string& source, double shift) {
     if (std::min(picture.width, picture.height) < 16 || picture.channels < 1)
         throw Error(source, Message("the picture is smaller than 16 pixels"));
-    Raster grey = grey_of(picture);
+    Raster grey = light_of(picture, kLuma);
+    double other = 0;
     if (light_on_dark(grey))
         for (float& v : grey.value) v = 1 - v;
+    else if (std::optional<Raster> one = without_other_colours(picture, other))
+        grey = std::move(*one);
     Paper paper(grey);
     Raster flat = paper.flat(grey);
     // Without ink the classes would be light and shade.
@@ -345,7 +415,10 @@ PictureInk picture_ink(const io::Image8& picture, const std::string& source, dou
     const auto [lo, hi] = keep_character(flat, at);
     if (!(hi.x > lo.x)) throw Error(source, Message("no ink stands out from the paper in this picture"));
     const int n = reduction_of(picture);
-    PictureInk out{.cells = cells_of(flat, at, lo, hi), .middle = 0.5 * n * (lo + hi), .units = units_of(lo, hi) / n};
+    PictureInk out{.cells = cells_of(flat, at, lo, hi),
+                   .middle = 0.5 * n * (lo + hi),
+                   .units = units_of(lo, hi) / n,
+                   .other_colour = other};
     clean(out.cells);
     return out;
 }
