@@ -6,6 +6,8 @@
 #include "core/random.h"
 #include "core/system/parallel.h"
 #include "sheet.h"
+#include "stroke/placement/holder.h"
+#include "stroke/placement/tip_lag.h"
 
 /// Strokes with a sponge, and with tufts of other geometries.
 namespace tuft::stroke {
@@ -168,6 +170,25 @@ TEST(Sponge, ADabPrintsItsPoresAllOver) {
     RecordProperty("bare_percent", std::to_string(100 * bare / all));
     // Of the skin 55 % are pores. Ink spans their rims, and those smaller than a texel.
     EXPECT_GT(bare / all, 0.1);
+}
+
+// A sponge that begins pressed is set down straight: a step at full depth would be none.
+TEST(Sponge, ADotOfOneSampleLands) {
+    const brush::Preset sponge = brush::load_preset(kSponge);
+    HolderOptions options = holder_options(sponge);
+    TiltedTipLag tilted(sponge);
+    options.tip_lag = tilted.as_held();
+    StrokeSamples dot;
+    dot.samples.push_back({.position = {0, 0, 0}, .pressure = 0.3});
+    const StrokeSamples led = compensate_tip_lag(lean_holder(dot, options), options);
+    ASSERT_GT(led.samples.size(), 8u);
+    EXPECT_LT(led.samples.front().pressure, 0.01);
+    for (std::size_t i = 0; i < led.samples.size(); ++i) {
+        EXPECT_EQ(Vec2(led.samples[i].position), Vec2(0));
+        EXPECT_EQ(led.samples[i].tilt, Vec2(0));
+        if (i > 0) EXPECT_GE(led.samples[i].pressure, led.samples[i - 1].pressure);
+    }
+    EXPECT_EQ(led.samples.back().pressure, 0.3);
 }
 
 /// A leaf of hair: flat, pointed, with a hole.

@@ -261,7 +261,7 @@ std::array<double, 2> tops_of_a_live_corner(const Model& model, const std::strin
     return tops;
 }
 
-// A hand that does not know its path kept its hair down: spikes 4 mm high beside a reversal by 160 degrees.
+// A hand that does not know its path kept its hair down: spikes 4 to 6 mm high beside a reversal by 160 degrees.
 TEST(TurnBack, OfALivePointerLeavesNoSpike) {
     const Model model = sheet({}, 512);
     for (const auto& [degrees, pen] : {std::pair{160.0, false}, {160.0, true}, {140.0, false}}) {
@@ -269,8 +269,85 @@ TEST(TurnBack, OfALivePointerLeavesNoSpike) {
         const auto [all, first] = tops_of_a_live_corner(model, "flat-12", degrees, pen);
         EXPECT_GT(first, 4e-3);
         // Four texels; the hair of a pen springs forward, aslant, as it is lifted.
-        EXPECT_LT(all, first + (pen ? 1.5e-3 : 5e-4));
+        EXPECT_LT(all, first + (pen ? 2e-3 : 5e-4));
     }
+}
+
+/// The hand of a flat along x through `turns` (metres), pressed at 0.4, in steps of 0.25 mm.
+StrokeSamples hand_through(const std::vector<double>& turns) {
+    constexpr double kStep = 2.5e-4, kSpeed = 0.04;
+    StrokeSamples trace;
+    double time = 0;
+    for (std::size_t k = 0; k + 1 < turns.size(); ++k) {
+        const double way = turns[k + 1] - turns[k];
+        const int n = std::max(1, static_cast<int>(std::lround(std::abs(way) / kStep)));
+        for (int i = k > 0 ? 1 : 0; i <= n; ++i)
+            trace.samples.push_back({.time = time + i * std::abs(way) / n / kSpeed,
+                                     .position = {turns[k] + way * i / n, 0, 0},
+                                     .pressure = 0.4,
+                                     .roll = 0.5 * std::numbers::pi});
+        time = trace.samples.back().time;
+    }
+    return trace;
+}
+
+/// Least pressure of the holder from a time on, and its greatest tilt.
+std::array<double, 2> least_and_tilt(const StrokeSamples& trace, const HolderOptions& holder, double from) {
+    std::array<double, 2> out{1, 0};
+    const StrokeSamples led = compensate_tip_lag(lean_holder(add_turn_samples(trace, holder), holder), holder);
+    for (const StrokeSample& s : led.samples)
+        if (s.time >= from) out = {std::min(out[0], s.pressure), std::max(out[1], glm::length(s.tilt))};
+    return out;
+}
+
+// The path goes on as it came: by the net turn of the slack string no turn was seen.
+TEST(TurnBack, TwoTurnsWithinAStringAreLiftedToo) {
+    static WidthTables tables;
+    EXPECT_LT(least_and_tilt(hand_through({0, 0.02, 0.0185, 0.04}), tables.holder("flat-12"), 0.4)[0], 0.1);
+}
+
+// The last sample of a stroke, 1 um back, was lifted off and tilted by 0.12 rad.
+TEST(TurnBack, TremorIsNone) {
+    static WidthTables tables;
+    const std::vector<double> back{0, 0.03, 0.03 - 1e-6}, back_and_on{0, 0.02, 0.02 - 1e-6, 0.03};
+    for (const std::vector<double>& turns : {back, back_and_on}) {
+        const auto [pressure, tilt] = least_and_tilt(hand_through(turns), tables.holder("flat-12"), 0.3);
+        EXPECT_EQ(pressure, 0.4);
+        EXPECT_LT(tilt, 1e-3);
+    }
+}
+
+// A dot of a holder that does not compensate its lag has no direction to lean in.
+TEST(TurnBack, WithoutTipLagADotStandsUpright) {
+    for (const char* brush : {"fan-30", "sword-8"}) {
+        StrokeSamples dot;
+        dot.samples.push_back({.position = {0, 0, 0}, .pressure = 0.3});
+        const StrokeSamples leant = lean_holder(dot, holder_options(brush::load_preset(brush)));
+        EXPECT_EQ(leant.samples.front().tilt, Vec2(0)) << brush;
+    }
+}
+
+// A mouse at 1 m/s passes the turn in one event: the hand pressed on through it.
+TEST(TurnBack, OfAFastPointerIsLifted) {
+    static WidthTables tables;
+    const Model model = sheet({}, 128);
+    StrokeSamples trace;
+    for (int i = 0; i <= 12; ++i)
+        trace.samples.push_back(
+            {.time = 0.004 * i, .position = {i <= 6 ? -0.012 + 4e-3 * i : 0.036 - 4e-3 * i, 0, 0}, .pressure = 0.4});
+    const brush::Preset preset = brush::load_preset("flat-12");
+    const HolderOptions& holder = tables.holder("flat-12");
+    PointerSettings settings;
+    settings.roll = 0.5 * std::numbers::pi;
+    settings.smoothing = 0;
+    const PointerInput pointer(*model.query, preset, settings, {holder.tip_lag, holder.tip_lag_change});
+    const std::vector<StrokeSamples> drawn =
+        draw_with_pointer(pointer, aims_of(trace, model.mesh->bounds, 1e-4, false));
+    ASSERT_EQ(drawn.size(), 1u);
+    double highest = 0;  // of the tip over the sheet, but for the ends
+    const std::vector<StrokeSample>& poses = drawn.front().samples;
+    for (std::size_t i = 30; i + 14 < poses.size(); ++i) highest = std::max(highest, poses[i].position.z);
+    EXPECT_GT(highest, preset.length);
 }
 
 TEST(TurnBack, IsTheSameForAnySamples) {

@@ -285,7 +285,7 @@ bool set_down(StrokeSamples& trace, const HolderOptions& options, const Vec2& ah
     const StrokeSample first = trace.samples.front();
     if (!(tip_lag_length(options.tip_lag, depth_of(options, first.pressure)) > 0)) return false;
     const double pace = first_pace(trace.samples, kPaceLength);
-    if (!(pace > 0) && (!dot || ahead == Vec2(0))) return false;
+    if (!(pace > 0) && (!dot || (ahead == Vec2(0) && !options.foam))) return false;
     // Metres that the foot of the holder goes, ahead and down, up to each pressure.
     std::vector<double> gone{0};
     Vec3 foot{0};
@@ -346,7 +346,7 @@ double angle_of(const Vec2& ahead) {
 /// round one to the right and down, as a right hand goes; of a blade, which is led along its line, x or −x. Zero for a
 /// sponge, whose pores a hand that goes on would smear.
 Vec2 dot_direction(const StrokeSample& first, const HolderOptions& options) {
-    if (options.foam) return Vec2{0};
+    if (options.foam || options.tip_lag.empty()) return Vec2{0};
     if (options.blade_landing > 0) {
         const Vec2 along{std::cos(first.roll), -std::sin(first.roll)};
         return glm::dot(first.tilt, along) < 0 ? -along : along;

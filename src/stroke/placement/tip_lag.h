@@ -150,7 +150,9 @@ StrokeSamples add_turn_samples(const StrokeSamples& trace, const HolderOptions& 
 ///     |v_holder| ≤ (1 + tip_lag / tip_lag_turn + 2 κ L + 1.5) |v_path| + 4 (|depth'| + L |tilt'| + L |roll'|),
 ///
 /// with L the tuft's length; of a brush that `has_lag_by_turn` 6 |v_path| more, as its hair falls over within L / 2.
-/// Above the surface it is at most `hover / kHoverTime` faster than the hand.
+/// Above the surface it is at most `hover / kHoverTime` faster than the hand. Where a turn lifts the hair (turn_back.h)
+/// the holder goes up, over and down on 0.6 to 3 `tip_lag_turn` of path: a flat's 27 times as fast as the hand in a
+/// reversal, 36 times at a corner of 115 to 120°.
 StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& options);
 
 /// Adds samples after a trace that ends with pressure 0, in which the tip rises to `hover`. Other traces do not change.

@@ -43,9 +43,23 @@ inline constexpr LiftedTurns kLiftedTurns{100 * kDegree, 115 * kDegree};
 /// Of a pen: its hair trails, comes round corners, and springs forward under the pen as it is lifted.
 inline constexpr LiftedTurns kLiftedPenTurns{145 * kDegree, 160 * kDegree};
 
-/// Returns the lift of a turn by `turn` radians, in which the string becomes as short as `shortest`. In a turn by less
-/// than 168° the string stays longer than 0.2; the hair is in the air over the last quarter of what it becomes shorter.
-TurnLift turn_lift(double turn, double shortest, const LiftedTurns& lifted = kLiftedTurns);
+/// A turn of a path, along which the string is slack, place by place of the hand.
+class Turn {
+  public:
+    /// The string was last taut at `position`, metres; `string`: from its end to the hand, over λ.
+    void begin(const Vec3& position, const Vec3& string);
+    /// Takes the next place. `length`: λ, metres.
+    void follow(const Vec3& position, const Vec3& string, double length);
+    /// Returns the lift by the greatest turn up to here, from the string's direction at the beginning, and by the
+    /// shortest that the string became or becomes if the path goes on straight. Motions shorter than λ/20 are tremor
+    /// and turn nothing. In a turn by less than 158° the string stays longer than 0.36; the hair is in
+    /// the air while it is shorter than that by 0.06 of what is missing to 1.
+    TurnLift lift(const LiftedTurns& lifted) const;
+
+  private:
+    Vec3 before_{0}, from_{0};
+    double turn_ = 0, shortest_ = 1;
+};
 
 /// Where a recorded hand is in a turn.
 struct Turning {
@@ -58,11 +72,11 @@ struct Turning {
 std::vector<Turning> find_turnings(std::span<const StrokeSample> samples, double string, const Vec2& ahead,
                                    bool lifted);
 
-/// A hand that turns while nobody knows its next sample. The path is taken to go on straight.
+/// A hand that turns while nobody knows its next sample: lifted by what is known of the turn.
 class TurnFollower {
   public:
-    /// Takes the next place of the hand, metres, and its string there, over λ.
-    void follow(const Vec3& position, const Vec3& string, const LiftedTurns& lifted);
+    /// Takes the next place of the hand, metres, and its string there, over λ, `length` metres.
+    void follow(const Vec3& position, const Vec3& string, double length, const LiftedTurns& lifted);
     const TurnLift& lift() const { return lift_; }
     /// Returns the metres that the hand has gone since the hair was last in the air, and how much it turned back there.
     double since_turn() const { return since_turn_; }
@@ -70,8 +84,8 @@ class TurnFollower {
 
   private:
     bool started_ = false;
-    Vec3 before_{0}, from_{0};  // string and place where it was last taut
-    Vec3 last_{0};              // the last place
+    Turn turn_;
+    Vec3 last_{0};  // the last place
     double since_turn_ = 1e9, turned_back_ = 0;
     TurnLift lift_;
 };

@@ -196,6 +196,14 @@ Vec3 PointerInput::ahead_of(const Aim& aim, const Vec3& normal, double pressure)
     return lag.x * axes.right + lag.y * axes.down + spread * dragged_.string;
 }
 
+// A pen that presses more trails by more: its string grows as taut as it is.
+void PointerInput::grow_string() {
+    if (!is_lifted_at_turns(holder_)) return;
+    const double reach = std::max(holder_.tip_lag_turn, half_lag(holder_, steadying_.press.pressure));
+    trailing_.position -= (reach - trailing_reach_) * trailing_.string;
+    trailing_reach_ = reach;
+}
+
 // The point has moved: what it drags follows on the strings, along the surface.
 void PointerInput::drag(const Aim& aim) {
     const auto follow = [&](DraggedPoint& dragged, double reach) {
@@ -208,11 +216,14 @@ void PointerInput::drag(const Aim& aim) {
     if (is_clean(aim))
         follow(dragged_, holder_.tip_lag_turn);
     else if (is_lifted_at_turns(holder_))
-        follow(trailing_, std::max(holder_.tip_lag_turn, half_lag(holder_, steadying_.press.pressure)));
+        follow(trailing_, trailing_reach_);
     follow(leant_, lean);
     if (!is_lifted_at_turns(holder_)) return;
     const DraggedPoint& dragged = trails(aim);
-    turns_.back.follow(point_.position, dragged.string, is_clean(aim) ? kLiftedTurns : kLiftedPenTurns);
+    if (is_clean(aim))
+        turns_.back.follow(point_.position, dragged.string, holder_.tip_lag_turn, kLiftedTurns);
+    else
+        turns_.back.follow(point_.position, dragged.string, trailing_reach_, kLiftedPenTurns);
     // Hair that is lifted is set down leaning to its other side.
     const TurnLift& lift = turns_.back.lift();
     if (lift.back >= 1 && glm::length(dragged.string) < lift.air)
@@ -250,6 +261,7 @@ void PointerInput::pen_down(const Aim& aim, const AimedSurface& hit, const Vec3&
     turns_.blade.reset();
     dragged_ = {point_.position - holder_.tip_lag_turn * towards, towards};
     trailing_ = {point_.position, Vec3(0)};
+    trailing_reach_ = holder_.tip_lag_turn;
     turns_.back = {};
     turn_holder(aim, Vec3(0));
     const Vec3 leans = towards != Vec3(0) ? towards : across(aim);
@@ -366,13 +378,31 @@ void PointerInput::step(const Aim& aim, const Vec3& target, const Vec3& normal, 
     // The string's end lies on the surface too.
     steadying_.string.tip += onto_surface();
     steadying_.position.value = point_.position;
-    drag(aim);
-    turn_holder(aim, point_.position - before);
-    const double travel = glm::distance(before, point_.position);
-    motion_.gone += travel;
-    settle_pressure(aim, travel, dt);
-    motion_.time += dt;
-    poses.push_back(pose_at(aim, point_.position, point_.normal, steadying_.press.pressure, motion_.time));
+    const Vec3 after = point_.position;
+    const int parts = parts_of(aim, after - before);
+    for (int i = 1; i <= parts; ++i) {
+        const Vec3 from = i > 1 ? point_.position : before;
+        point_.position = i < parts ? glm::mix(before, after, static_cast<double>(i) / parts) : after;
+        drag(aim);
+        turn_holder(aim, point_.position - from);
+        const double travel = glm::distance(from, point_.position);
+        motion_.gone += travel;
+        settle_pressure(aim, travel, dt / parts);
+        grow_string();
+        motion_.time += dt / parts;
+        poses.push_back(pose_at(aim, point_.position, point_.normal, steadying_.press.pressure, motion_.time));
+    }
+}
+
+// Where a path turns back, the hair is lifted and set down within two lengths of a string, which a fast hand passes in
+// one step.
+int PointerInput::parts_of(const Aim& aim, const Vec3& motion) const {
+    constexpr double kPartsOfString = 6, kMostParts = 24;
+    const Vec3& string = trails(aim).string;
+    const bool slack = glm::dot(string, motion) < 0 || glm::length(string) < 1 - 1e-9;
+    if (!is_lifted_at_turns(holder_) || !slack || string == Vec3(0)) return 1;
+    const double reach = is_clean(aim) ? holder_.tip_lag_turn : trailing_reach_;
+    return static_cast<int>(std::clamp(std::ceil(kPartsOfString * glm::length(motion) / reach), 1.0, kMostParts));
 }
 
 // Where a pen leaves, the tip goes along its string to it, through the pressures between them.
@@ -475,6 +505,7 @@ std::vector<StrokeStep> PointerInput::lift() {
     down_ = false;
     turns_.follower = {};
     turns_.blade.reset();
+    turns_.back = {};
     steps.push_back(std::move(step));
     steps.push_back({StrokeStep::Kind::end, {}});
     return steps;

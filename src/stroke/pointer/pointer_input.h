@@ -127,6 +127,8 @@ class PointerInput {
     void set_down(std::vector<StrokeStep>& steps);
     void arrive(std::vector<brush::Pose>& poses);
     void drag(const Aim& aim);
+    void grow_string();
+    int parts_of(const Aim& aim, const Vec3& motion) const;
     void follow(const Aim& aim, const Vec3& goal, const Vec3& normal, std::vector<brush::Pose>& poses);
     void step(const Aim& aim, const Vec3& target, const Vec3& normal, double dt, std::vector<brush::Pose>& poses);
     Vec3 pull_on_string(Aim& aim, const Vec3& hand);
@@ -148,6 +150,7 @@ class PointerInput {
     std::vector<Waiting> waiting_;  ///< of a clean stroke, until its direction is known
     DraggedPoint dragged_;          ///< on a string of `tip_lag_turn`: where the tip lag points; of a clean stroke
     DraggedPoint trailing_;         ///< on one of half the tip lag, of a pen that is lifted where it turns back
+    double trailing_reach_ = 0;     ///< metres, length of that string
     DraggedPoint leant_;            ///< on one of `lean_string`: where the make leans
     Turns turns_;
     Place goal_, point_;  ///< of the cursor; of the smoothed or dragged point
