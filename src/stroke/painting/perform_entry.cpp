@@ -15,7 +15,7 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr double kDryLimit = 3600;  // seconds, in which all is dry
+constexpr double kDryLimit = 3600;  // seconds, in which all is dry where the air moves
 
 // Tiles of a canvas that are about to change.
 LayerTiles tiles_of(std::uint32_t layer, const ink::Canvas& canvas) {
@@ -105,7 +105,7 @@ void perform_drying(PaintedModel& painted, std::uint64_t id, const Dry& wait, st
             if (wait.seconds > 0)
                 film.advance(canvas, wait.seconds, params, copy, progress);
             else
-                film.dry(canvas, params, copy, kDryLimit, progress);
+                film.dry(canvas, params, copy, params.drying.still_air > 0 ? kLongestWait : kDryLimit, progress);
         } catch (...) {
             painted.restore(undo.tiles);
             throw;
