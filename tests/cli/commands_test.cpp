@@ -259,12 +259,16 @@ TEST_F(Commands, BrushComparesTheSpineMethodsThatCanBendIt) {
         ASSERT_EQ(ran.status, 0) << brush << ran.err;
         std::vector<std::string> compared;
         const json out = json::parse(ran.out);
+        EXPECT_EQ(out["brush"], brush);
         for (const json& model : out["models"]) {
             compared.push_back(model["spine"]);
             EXPECT_TRUE(model["rows"][0]["width_mm"].is_number()) << brush;
         }
         EXPECT_EQ(compared, spines) << brush;
     }
+    // In that size the end of its hair would be wider than a preset may state.
+    write("long.csv", "# hair (tip) length 50 mm\nz_mm,width_mm,drag_mm,offset_mm\n3,3,3,2\n");
+    EXPECT_EQ(tuft("brush stippler-10 --compare " + path("long.csv")).status, 0);
 }
 
 TEST_F(Commands, APersistentBrushReplaysTheSame) {

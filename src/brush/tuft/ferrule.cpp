@@ -123,9 +123,12 @@ std::vector<FerruleSpine> ferrule_spines(const Preset& p) {
     return out;
 }
 
-double hair_length(const Preset& p, double s) {
-    const double outermost = p.slant > 0 ? 2 * ferrule_spines(p).back().x / p.width : 1;
-    return std::min(1.0, length_at(p, s, outermost));
+HairLengths::HairLengths(const Preset& p) : toe_(p.toe / p.length), slant_(p.slant / p.length) {
+    if (slant_ > 0) outermost_ = 2 * ferrule_spines(p).back().x / p.width;
+}
+
+double HairLengths::at(double s) const {
+    return std::min(1.0, 1 - toe_ * (1 - std::sqrt(std::max(0.0, 1 - s * s))) - 0.5 * slant_ * (1 - s / outermost_));
 }
 
 FerruleSpine single_spine(const Preset& p) {

@@ -52,9 +52,16 @@ inline bool has_one_skin(const Preset& preset) {
     return has_broad_side(preset) && preset.spine != SpineMethod::rod;
 }
 
-/// Returns the length of the hair of a row at s = x/a, −1 to 1, over the tuft's: less towards the edges of a toe and
-/// towards one end of a blade.
-double hair_length(const Preset& preset, double s);
+/// Lengths of the hair of a row: less towards the edges of a toe and towards one end of a blade.
+class HairLengths {
+  public:
+    explicit HairLengths(const Preset& preset);
+    /// Returns the length at s = x/a, −1 to 1, over the tuft's.
+    double at(double s) const;
+
+  private:
+    double toe_, slant_, outermost_ = 1;  // over the tuft's length; s of the last spine of a blade
+};
 
 /// Returns the strip that is the whole mouth of a wide ferrule.
 FerruleSpine single_spine(const Preset& preset);

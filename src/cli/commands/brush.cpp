@@ -238,10 +238,13 @@ int compare(const Brush& a) {
     check_output(a.picture);
     const std::vector<brush::SweepRow> measured = brush::read_sweep(a.compare.string());
     brush::Preset preset = brush::load_preset(a.name.empty() ? "robot-2020" : a.name);
-    // In the size that has hair of that length, so that a toe, a slant or a geometry stays in proportion.
-    if (const auto length = brush::stated_length(a.compare.string());
-        length && *length != preset.length && !brush::is_foam(preset))
-        preset = brush::scaled(preset, *length / preset.length);
+    // A slant or a geometry stays in proportion to the hair; foam keeps its height.
+    if (const auto length = brush::stated_length(a.compare.string()); length && !brush::is_foam(preset)) {
+        const std::string name = preset.name;
+        if (preset.slant > 0 || preset.geometry) preset = brush::scaled(preset, *length / preset.length);
+        preset.length = *length;
+        preset.name = name;
+    }
     brush::check_preset(preset, preset.name);
     const std::vector<brush::ModelSweep> models = brush::compare_models(preset, measured);
     if (!a.picture.empty()) {

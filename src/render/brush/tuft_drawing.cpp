@@ -113,11 +113,9 @@ Vec3 point_in_row(const std::vector<Strand>& strands, std::size_t k, std::size_t
 
 /// Metres by which the hair of a row ends beyond the end of its spine: that of a toe or a blade differs in length from
 /// one side of a strip to the other.
-double beyond_spine(const Tuft& tuft, const Placed& placed) {
-    const Preset& p = tuft.preset;
-    if (!(p.toe > 0 || p.slant > 0)) return 0;
-    return p.length *
-           (hair_length(p, placed.whole.x) - tuft.spines[static_cast<std::size_t>(placed.part.branch)].rest_length);
+double beyond_spine(const Tuft& tuft, const HairLengths& lengths, const Placed& placed) {
+    const double own = tuft.spines[static_cast<std::size_t>(placed.part.branch)].rest_length;
+    return tuft.preset.length * (lengths.at(placed.whole.x) - own);
 }
 
 /// First section from the tip on, from `stop`, that lies `cut` metres or more from the tip.
@@ -192,6 +190,8 @@ void draw_tuft_hair(BrushCanvas& canvas, const Tuft& tuft, const TuftState& stat
     Random random(tuft.bundles.seed + 7);
     std::vector<double> shade(bristles.size());
     for (double& s : shade) s = random.uniform(-0.2, 0.2);
+    const bool unequal = state.strips && (tuft.preset.toe > 0 || tuft.preset.slant > 0);
+    const HairLengths lengths(tuft.preset);
     std::vector<Vec2> line;
     std::vector<double> width;
     for (const std::size_t h : order) {
@@ -202,7 +202,7 @@ void draw_tuft_hair(BrushCanvas& canvas, const Tuft& tuft, const TuftState& stat
         // Hairs end at unequal lengths; water draws all of them to the point.
         const double outward = state.strips ? std::abs(p.whole.y) : glm::length(p.whole);
         const double short_by = appearance.dry ? 0.16 * readiness : 0.3 * readiness * readiness * outward;
-        const double beyond = state.strips ? beyond_spine(tuft, p) : 0;
+        const double beyond = unequal ? beyond_spine(tuft, lengths, p) : 0;
         const std::size_t stop = first_left(fine, static_cast<std::size_t>(short_by * n), -beyond);
         line.clear();
         width.clear();
@@ -224,7 +224,7 @@ void draw_tuft_hair(BrushCanvas& canvas, const Tuft& tuft, const TuftState& stat
             lit += glm::dot(at->x * fine[i].e + at->y * fine[i].m, light);
         }
         if (line.size() < 2) continue;
-        lit /= static_cast<double>(line.size());
+        lit /= static_cast<double>(line.size() - (stop == 0 && ahead > 0 ? 1 : 0));
         const double tone = std::clamp(0.42 + 0.5 * lit + shade[h], 0.0, 1.0);
         stroke_line(canvas, line, width, glm::mix(linear_colour(48, 32, 22), linear_colour(206, 168, 120), tone), 0.8);
     }
