@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . .ci/setup.sh
-install_missing "${packages_build[@]}"
+install_missing "${packages_build[@]}" python3
 cmake_options=()
 build tuft tuft_images tuft-chart tuft-patterns
 tuft=build/release/src/cli/tuft
@@ -96,6 +96,11 @@ paint blue-and-white vase blue-and-white "--film wet --dry 0" --view 0,4 --size 
 paint car-sword car car-sword "--substrate clay" --view 10,8 --size 740x460
 oiiotool "$out/car-sword.png" "$out/blue-and-white.png" "$out/flat-bamboo.png" "$out/one-stroke.png" --create 1480x920 3 \
   --paste +0+0 --paste +740+0 --paste +0+460 --paste +740+460 -d uint8 -o "$out/trades.png"
+
+say "a sheet of makes"
+TUFT=$tuft TEXELS=1024 samples/makes/sheet.sh "$out/makes" liner-3 rigger-3 wash-12 mop-15 wolf-medium flat-12 bright-12 filbert-12 \
+  fan-30 sword-8 stippler-10 sponge-30
+oiiotool "$out/makes/makes.png" --resize 1480x1101 -d uint8 -o "$out/makes.png"
 
 paint impasto sheet impasto "--substrate bisque" --raking --view 0,89 --size 1400x1000 --zoom 2.6
 

@@ -54,35 +54,29 @@ def strokes(cell, length, broad):
     x, y = centre(1, 0)
     half = 0.36 * cell
     land = 0 if broad else 0.25 * length
-    out.append(Stroke("straight").go(line(x - half, y - 0.2 * cell, x + half, y - 0.2 * cell, across, land=land), speed))
-    out.append(Stroke("straight, diagonal").go(line(x - half, y + 0.35 * cell, x + half, y + 0.05 * cell, across, land=land), speed))
+    out.append(Stroke("straight").go(line(x - half, y, x + half, y, across, land=land), speed))
     x, y = centre(2, 0)
-    out.append(Stroke("edge, to the right").go(line(x - half, y - 0.25 * cell, x + half, y - 0.25 * cell, other, 0.35, land), speed))
-    out.append(Stroke("edge, down").go(line(x - 0.15 * cell, y - 0.12 * cell, x - 0.15 * cell, y + half, across, 0.35, land), speed))
-    out.append(Stroke("broad, down").go(line(x + 0.2 * cell, y - 0.12 * cell, x + 0.2 * cell, y + half, across - 90 * (broad > 0), 0.5, land), speed))
+    out.append(Stroke("edge").go(line(x - half, y - 0.25 * cell, x + half, y - 0.25 * cell, other, 0.35, land), speed))
+    out.append(Stroke("broad, down").go(line(x, y - 0.12 * cell, x, y + half, across - 90 * (broad > 0), 0.5, land), speed))
     x, y = centre(3, 0)
     turn = [(x + 0.27 * cell * math.sin(t), y - 0.27 * cell * math.cos(t), 0.5 * min(1, t / 0.6, (4.5 - t) / 0.6), across)
             for t in [4.5 * i / 60 for i in range(61)]]
     out.append(Stroke("turn").go(turn, 0.6 * speed))
     x, y = centre(0, 1)
     follow = (lambda w: across - math.degrees(w)) if broad else None
-    out.append(Stroke("S").go(wave(x - half, x + half, y - 0.2 * cell, 0.13 * cell, broad), speed))
-    out.append(Stroke("S, following").go(wave(x - half, x + half, y + 0.22 * cell, 0.13 * cell, broad, follow), speed))
+    out.append(Stroke("S, following").go(wave(x - half, x + half, y, 0.13 * cell, broad, follow), speed))
     x, y = centre(1, 1)
-    press = [(x - half + 2 * half * f, y - 0.22 * cell, 0.02 + 0.88 * math.sin(2 * math.pi * f) ** 2 if 0.02 < f < 0.98 else 0,
+    press = [(x - half + 2 * half * f, y, 0.02 + 0.88 * math.sin(2 * math.pi * f) ** 2 if 0.02 < f < 0.98 else 0,
               across) for f in [i / 60 for i in range(61)]]
     out.append(Stroke("press and lift").go(press, speed))
-    press = [(px, py + 0.47 * cell, p, other) for px, py, p, _ in press]
-    out.append(Stroke("press and lift, edge" if broad else "press and lift again").go(press, speed))
     x, y = centre(2, 1)
-    for i, amount in enumerate((0.6, 0.75, 0.88)):
-        at = y + (i - 1) * 0.3 * cell
+    for i, amount in enumerate((0.6, 0.88)):
+        at = y + (i - 0.5) * 0.4 * cell
         out.append(Stroke(f"dry {amount}", care("wipe", amount=amount)).go(line(x - half, at, x + half, at, across, land=land), 1.5 * speed))
     x, y = centre(3, 1)
-    out.append(Stroke("leaning").go(line(x - half, y - 0.2 * cell, x + half, y - 0.2 * cell, across, 0.25, land), speed))
-    out.append(Stroke("reversed").go([(x - half, y + 0.2 * cell, 0, across), (x - 0.8 * half, y + 0.2 * cell, 0.4, across),
-                                      (x + half, y + 0.2 * cell, 0.4, across), (x - 0.3 * half, y + 0.25 * cell, 0.4, across),
-                                      (x - half, y + 0.25 * cell, 0, across)], speed))
+    out.append(Stroke("there and back").go([(x - half, y, 0, across), (x - 0.8 * half, y, 0.4, across),
+                                            (x + half, y, 0.4, across), (x - 0.3 * half, y + 0.25 * cell, 0.4, across),
+                                            (x - half, y + 0.35 * cell, 0, across)], speed))
     if broad == 2:  # a stripe is drawn by the point of a blade
         for stroke in out:
             for point in stroke.points:

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Paints what each make of brush does: dots, a straight stroke, one on the edge, a turn, an S, press and lift, dry hair,
-# there and back. usage: sheet.sh [FOLDER [BRUSH...]]; a picture for each make, and makes.png of all.
+# Paints what each make of brush does: dots; straight; edge and broad side; a turn; an S; press and lift; dry hair; a sharp
+# corner. usage: sheet.sh [FOLDER [BRUSH...]]; a picture for each make, and makes.png of all.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 tuft=${TUFT:-build/release/src/cli/tuft}
