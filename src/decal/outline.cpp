@@ -105,11 +105,8 @@ std::vector<BorderRun> border_runs(const FilmMesh& film, const Panel& panel, con
     std::vector<BorderRun> runs;
     for (std::size_t i = 0; i < n;) {
         const std::uint32_t label = label_beyond(border[(first + i) % n]);
-        BorderRun run{.line = {},
-                      .reach = label == kNone ? free
-                               : label == own ? 0
-                                              : options.overlap(label),
-                      .seam = label != kNone && label != own};
+        const double reach = label == kNone ? free : label == own ? 0 : std::min(options.overlap(label), free);
+        BorderRun run{.line = {}, .reach = reach, .seam = label != kNone && label != own && reach < free};
         const auto corner = [&](std::size_t k, std::uint32_t next) {
             const std::uint32_t h = border[(first + k) % n];
             return panel.flat[panel.chart.faces[h / 3][(h % 3 + next) % 3]];

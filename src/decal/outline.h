@@ -16,7 +16,8 @@ struct OutlineOptions {
     double join = 0.01;        ///< islands of paint nearer than this to each other share a piece of film
     double least_side = 0.01;  ///< short side of the smallest piece: what fingers can hold
     double texel = 1e-4;       ///< of the coverage
-    /// Returns how far the film may reach beyond a seam with the panels of a label.
+    /// Returns how far the film may reach beyond a seam with the panels of a label, metres. Infinite: nothing is
+    /// painted there, and the seam is like any border of the film.
     std::function<double(std::uint32_t label)> overlap;
 };
 

@@ -11,6 +11,7 @@
 #include "atlas/flatten/hull.h"
 #include "atlas/seams/half_edges.h"
 #include "core/error.h"
+#include "core/system/parallel.h"
 #include "decal/nest.h"
 #include "decal/page_marks.h"
 #include "decal/panels/gaps.h"
@@ -36,6 +37,7 @@ struct CutFilm {
     FilmMesh film;
     std::vector<Panel> panels;
     std::map<std::uint32_t, std::size_t> index;  // of a panel, by its label
+    std::vector<std::uint8_t> is_bare;           // [panels] nothing is painted there: it gets no piece
 
     std::uint32_t label(std::size_t panel) const { return film.label[panels[panel].chart.triangles[0]]; }
 };
@@ -49,9 +51,12 @@ double drawn_around(const SheetOptions& options) {
     return std::max(printed_bleed(options), options.overlap > 0 ? kTickTo : 0);
 }
 
-/// How far film i reaches beyond its seam with another panel: the one with the lower number lies below.
+/// How far film i reaches beyond its seam with another panel: the one with the lower number lies below. Beside a bare
+/// one there is no seam.
 double overlap_of(const CutFilm& cut, std::size_t i, std::uint32_t label, const SheetOptions& options) {
-    return cut.index.at(label) > i ? options.overlap : 0;
+    const std::size_t other = cut.index.at(label);
+    if (cut.is_bare[other]) return std::numeric_limits<double>::infinity();
+    return other > i ? options.overlap : 0;
 }
 
 /// Up the model on a panel's sheet, unit; on level panels to its back.
@@ -96,6 +101,13 @@ CutFilm cut_film(const mesh::TriangleMesh& model, const PrintSource& source, con
         return fits_page(chart, flat, options);
     };
     cut.panels = cut_into_panels(cut.film, source.coverage, panel_options);
+    cut.is_bare.resize(cut.panels.size());
+    parallel_for(cut.panels.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            cut.is_bare[i] = std::ranges::none_of(cut.panels[i].chart.triangles, [&](std::uint32_t t) {
+                return is_painted(cut.film, t, source.coverage, source.texel);
+            });
+    });
     for (std::size_t i = 0; i < cut.panels.size(); ++i) cut.index[cut.label(i)] = i;
     return cut;
 }
@@ -108,7 +120,8 @@ std::vector<Piece> find_pieces(const mesh::TriangleMesh& model, const CutFilm& c
     for (std::size_t i = 0; i < cut.panels.size(); ++i) {
         report(options.progress, "cut lines", static_cast<double>(i) / static_cast<double>(cut.panels.size()));
         const auto reach = [&](std::uint32_t label) {
-            return overlap_of(cut, i, label, options) + printed_bleed(options);
+            const double overlap = overlap_of(cut, i, label, options);
+            return (std::isinf(overlap) ? options.bleed : overlap) + printed_bleed(options);
         };
         surfaces.push_back(extend(cut.film, cut.panels[i], reach, in_gap, printed_bleed(options)));
         const OutlineOptions outline{
@@ -328,7 +341,7 @@ void add_lap_ticks(const CutFilm& cut, const Piece& piece, const SheetOptions& o
     for (std::uint32_t h = 0; h < panel.is_seam.size(); ++h) {
         if (!panel.is_seam[h]) continue;
         const std::uint32_t label = cut.film.label[twin[3 * panel.chart.triangles[h / 3] + h % 3] / 3];
-        if (cut.index.at(label) <= piece.surface || options.overlap <= 0) continue;
+        if (cut.index.at(label) <= piece.surface || options.overlap <= 0 || cut.is_bare[cut.index.at(label)]) continue;
         const auto [a, b] = edge_of(panel, h);
         const double length = glm::length(b - a);
         const int n = static_cast<int>(length / kSeamStep) + 1;

@@ -149,6 +149,24 @@ TEST_F(SheetOfFormula, PanelsLapByTheOverlap) {
     EXPECT_EQ(ticks, 4u);
 }
 
+// A strip longer than the page is cut through bare film, 1 mm beside the paint: the film of the bleed goes on there.
+TEST_F(SheetOfFormula, ACutThroughBareFilmTakesNoBleed) {
+    const mesh::TriangleMesh model = test::cylinder_part(kRadius, 1.2, 0.2, 8, 1);
+    const auto painted = [](const Vec3& p) {
+        const double x = kRadius * std::atan2(p.y, p.x) / kMm, z = p.z / kMm;
+        return std::abs(x) < 15 && z > 101 && z < 121;
+    };
+    const Sheet made =
+        sheet(model, painted, {.bleed = 3 * kMm, .overlap = 1 * kMm, .join = 0, .page = {0.1, 0.12}, .prints = false});
+    ASSERT_EQ(made.pieces.size(), 1u);
+    const double truth = 36 * 26 - (4 - test::kPi) * 9;                            // mm², corners of 3 mm
+    EXPECT_NEAR(area_of(made.pieces[0].film) / (kMm * kMm), truth, 0.02 * truth);  // facets of 7 mm, cells of 0.1 mm
+    for (const Page& page : made.pages)
+        for (const Line& line : page.lines)
+            if (line.role == Role::label && line.points.size() == 2)
+                EXPECT_GT(std::abs(glm::length(line.points[1] - line.points[0]) - 2 * kMm), 1e-9) << "no tick of a lap";
+}
+
 // A tongue of one area reaches into a bay of the next, so a straight cut between them parts its tip from it.
 TEST_F(SheetOfFormula, LeavesOutWhatACutPartsFromALargePieceAndSaysHowMuch) {
     const mesh::TriangleMesh model = test::cylinder_part(kRadius, 2, 0.03, 100, 30);

@@ -23,15 +23,17 @@ Weights mix(const Weights& a, const Weights& b, double t) {
     return {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])};
 }
 
-bool is_painted(const mesh::TriangleMesh& model, std::uint32_t triangle, const CoverageFn& coverage, double texel) {
+/// Whether `covered` of the weights is more than half anywhere in a triangle of a mesh.
+template <class Covered>
+bool is_painted_in(const mesh::TriangleMesh& mesh, std::uint32_t triangle, double texel, const Covered& covered) {
     double longest = 0;
     for (int k = 0; k < 3; ++k)
-        longest = std::max(longest, glm::length(model.position(triangle, (k + 1) % 3) - model.position(triangle, k)));
+        longest = std::max(longest, glm::length(mesh.position(triangle, (k + 1) % 3) - mesh.position(triangle, k)));
     const int n = std::clamp(static_cast<int>(std::ceil(longest / texel)), 1, kMostSamples);
     for (int i = 0; i <= n; ++i)
         for (int j = 0; i + j <= n; ++j) {
             const double b = static_cast<double>(i) / n, c = static_cast<double>(j) / n;
-            if (coverage(triangle, {1 - b - c, b, c}) > kPainted) return true;
+            if (covered(Weights{1 - b - c, b, c}) > kPainted) return true;
         }
     return false;
 }
@@ -232,7 +234,9 @@ FilmMesh select_film(const mesh::TriangleMesh& model, const CoverageFn& coverage
     std::vector<std::uint8_t> chosen(n, 0);
     parallel_for(n, 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t)
-            chosen[t] = is_painted(model, static_cast<std::uint32_t>(t), coverage, texel);
+            chosen[t] = is_painted_in(model, static_cast<std::uint32_t>(t), texel, [&](const Weights& weights) {
+                return coverage(static_cast<std::uint32_t>(t), weights);
+            });
     });
     grow(model, margin, chosen);
     FilmMesh film;
@@ -256,6 +260,15 @@ FilmMesh select_film(const mesh::TriangleMesh& model, const CoverageFn& coverage
     film.n_labels = film.source.empty() ? 0 : 1;
     label_parts(film, 0);
     return film;
+}
+
+bool is_painted(const FilmMesh& film, std::uint32_t triangle, const CoverageFn& coverage, double texel) {
+    return is_painted_in(film.mesh, triangle, texel, [&](const Weights& in_film) {
+        Weights weights{};
+        for (std::size_t corner = 0; corner < 3; ++corner)
+            for (std::size_t k = 0; k < 3; ++k) weights[k] += in_film[corner] * film.weights[triangle][corner][k];
+        return coverage(film.source[triangle], weights);
+    });
 }
 
 std::vector<std::uint32_t> cut(FilmMesh& film, std::uint32_t label, const Plane& plane) {

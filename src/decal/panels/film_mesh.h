@@ -39,6 +39,9 @@ struct Plane {
 /// 35°. `texel` is the distance of the samples, metres. Each connected part gets a label.
 FilmMesh select_film(const mesh::TriangleMesh& model, const CoverageFn& coverage, double margin, double texel);
 
+/// Whether more than half coverage lies anywhere in a triangle of the film, sampled every `texel` metres.
+bool is_painted(const FilmMesh& film, std::uint32_t triangle, const CoverageFn& coverage, double texel);
+
 /// Cuts the triangles of one label along a plane; both sides, connected part by connected part, get new labels, and the
 /// old label is used for the first of them. Triangles of other labels that share a cut edge are divided too, so edges
 /// always meet in full. Crossings within 5 % of an edge's end move onto that end. Returns the labels of the parts; one
