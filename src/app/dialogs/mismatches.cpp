@@ -8,9 +8,9 @@ namespace tuft::app {
 
 void mismatch_dialog(Session& s) {
     if (!s.dialogs.show_mismatches || !s.paint_thread) return;
-    if (!begin_dialog(s.ui, "Strokes that no longer fit", 640)) return end_dialog(s.ui);
+    if (!begin_dialog(s.ui, "What no longer fits", 640)) return end_dialog(s.ui);
     Ui& ui = s.ui;
-    ui.wrapped(ui.tr("These strokes do not lie on the revised model as they did. They stay in the journal."));
+    ui.wrapped(ui.tr("These strokes and areas do not lie on the revised model as they did. They stay in the journal."));
     for (const Message& line : s.project.revision.fit) ui.note(ui.sentence(line));
     const float rows = std::min(8.0f, static_cast<float>(s.project.revision.mismatches.size()));
     ImGui::BeginChild("mismatches", ImVec2(0, rows * ImGui::GetTextLineHeightWithSpacing() + ui.px(6)));
@@ -19,8 +19,9 @@ void mismatch_dialog(Session& s) {
                                        [&](const StrokeLine& l) { return l.id == mismatch.stroke; });
         if (line == s.journal.lines.end()) continue;
         char text[160];
-        std::snprintf(text, sizeof text, "%td   %s \xc2\xb7 %s", line - s.journal.lines.begin() + 1,
-                      ui.title(line->brush).c_str(), ui.tr(line->ink.c_str()));
+        const std::string brush = line->brush.empty() ? "" : ui.title(line->brush) + " \xc2\xb7 ";  // none of an area
+        std::snprintf(text, sizeof text, "%td   %s%s", line - s.journal.lines.begin() + 1, brush.c_str(),
+                      ui.tr(line->ink.c_str()));
         const float room = ImGui::GetContentRegionAvail().x;
         const std::string all = ui.sentence(mismatch.reason), why = ui.fitted(all, room - ui.px(170));
         const float right = ImGui::CalcTextSize(why.c_str()).x + ui.px(6);

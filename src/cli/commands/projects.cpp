@@ -201,8 +201,10 @@ int run(const Replay& a) {
     console.clear();
     if (a.common.json) {
         nlohmann::json list = nlohmann::json::array();
-        for (const stroke::StrokeMismatch& m : fit.mismatches)
+        for (const stroke::StrokeMismatch& m : fit.mismatches) {
             list.push_back({{"stroke", m.stroke}, {"reason", m.reason.text()}});
+            if (m.area) list.back()["area"] = true;
+        }
         nlohmann::json j{{"project", a.project.string()},
                          {"strokes", reports.size()},
                          {"missed", missed},

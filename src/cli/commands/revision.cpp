@@ -128,6 +128,7 @@ nlohmann::json to_json(const stroke::StrokeFit& f) {
                      {"stretched", f.length > 0 ? f.stretched / f.length : 0},
                      {"length_factor", f.kept > 0 ? f.kept_now / f.kept : 1},
                      {"followed", f.followed}};
+    if (f.area) j["area"] = true;
     if (f.slid) j["moved_on_model_mm"] = *f.slid / kMillimetre;
     if (!f.flat) j["deeper_mm"] = f.deeper / kMillimetre;
     return j;

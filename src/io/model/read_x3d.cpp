@@ -23,6 +23,7 @@ using Mat4 = glm::dmat4;
 using pugi::xml_node;
 
 constexpr int kDeepest = 256;
+constexpr std::size_t kMostKinds = 64, kNamedKinds = 5;     // of nodes that are skipped: told, named in an error
 constexpr std::size_t kMostNodes = 4'000'000;               // visited, each USE of one counted
 constexpr std::size_t kMostCorners = std::size_t{1} << 27;  // and points, with those of each USE
 
@@ -124,7 +125,10 @@ class Reader {
             out_.warnings.push_back(Message("<{}> is not read and was skipped", kind));
         if (out_.counts.empty() && !skipped_.empty()) {
             std::string kinds;
-            for (const std::string& kind : skipped_) kinds += (kinds.empty() ? "<" : ", <") + kind + ">";
+            std::size_t n = 0;
+            for (const std::string& kind : skipped_)
+                if (++n <= kNamedKinds) kinds += (kinds.empty() ? "<" : ", <") + kind + ">";
+            if (n > kNamedKinds) kinds += ", ...";
             throw Error(file_, Message("has no faces that are read: of {} none are", kinds));
         }
         if (!out_.colours.empty()) out_.colours.resize(out_.points.size(), {255, 255, 255, 255});
@@ -147,6 +151,10 @@ class Reader {
             while (n && n != root && !n.next_sibling()) n = n.parent();
             n = n == root ? xml_node() : n.next_sibling();
         }
+    }
+
+    void skip(std::string_view kind) {
+        if (skipped_.size() < kMostKinds) skipped_.insert(std::string(kind.substr(0, 60)));
     }
 
     /// The node itself, or the one that it says to use.
@@ -178,7 +186,7 @@ class Reader {
 
     void visit_one(const xml_node& node, const Mat4& world, const std::string& object, int depth) {
         const std::string_view kind = node.name();
-        if (kind == "Inline" || kind == "ProtoDeclare") skipped_.insert(std::string(kind));
+        if (kind == "Inline" || kind == "ProtoDeclare") skip(kind);
         if (kind == "Shape") return add_shape(node, world, object);
         if (kind != "Transform" && kind != "Group" && kind != "StaticGroup" && kind != "Anchor" &&
             kind != "Collision" && kind != "Switch" && kind != "LOD" && kind != "Billboard")
@@ -229,8 +237,7 @@ class Reader {
                        (kind.find("Triangle") != kind.npos || kind.find("Quad") != kind.npos)) {
                 g.faces = faces_of(node, kind);
             } else {
-                if (!kind.empty() && kind != "Appearance" && !kind.starts_with("Metadata"))
-                    skipped_.insert(std::string(kind.substr(0, 60)));
+                if (!kind.empty() && kind != "Appearance" && !kind.starts_with("Metadata")) skip(kind);
                 continue;
             }
             add_geometry(node, std::move(g), material_of(appearance), world, object);
