@@ -163,6 +163,41 @@ TEST(Copy, LeftBeforeRightAndTopBeforeBottom) {
     EXPECT_GT(g.strokes[1].median[0].y, g.strokes[2].median[0].y);
 }
 
+// A 撇 whose head is cut aslant, the corner to the upper left. The line begins there and never goes back along the way
+// of the stroke by more than the bend of its head: a path to and fro draws a ball.
+TEST(Copy, AHeadIsWrittenFromItsCornerWithoutGoingBack) {
+    const Ring outline{{600, 840}, {690, 800}, {660, 740}, {560, 690}, {380, 640}, {530, 740}, {590, 780}};
+    Cells ink = cells_over(std::span(&outline, 1), 2, 40);
+    fill(ink, std::span(&outline, 1));
+    const Vec2 from(650, 800), to(395, 648), on = glm::normalize(to - from);
+    Skeleton s{.pieces = {{.line = {}, .from = 0, .to = 1}}, .nodes = {{from, 15, 1}, {to, 5, 1}}};
+    for (double at = 0; at < glm::distance(from, to); at += 2) s.pieces[0].line.push_back(from + at * on);
+    const Glyph g = copied_glyph(ink, s, {{{0, false}}}, U'x');
+    ASSERT_EQ(g.strokes.size(), 1u);
+    const std::vector<Vec2>& line = g.strokes[0].median;
+    EXPECT_LT(glm::distance(line.front(), outline[0]), 30);
+    double farthest = -1e9, back = 0;
+    for (const Vec2& p : line) {
+        farthest = std::max(farthest, glm::dot(p, on));
+        back = std::max(back, farthest - glm::dot(p, on));
+    }
+    EXPECT_LT(back, 12);  // units: the inset of a begin
+}
+
+// Junctions cut a short piece down to one point, which has no direction to be continued in.
+TEST(Copy, AnArmOfOnePointHasNoCorner) {
+    const Ring outline{{300, 300}, {340, 300}, {340, 500}, {300, 500}};
+    Cells ink = cells_over(std::span(&outline, 1), 2, 40);
+    fill(ink, std::span(&outline, 1));
+    Skeleton s;
+    s.nodes = {{{318, 480}, 18, 1}, {{320, 480}, 18, 2}, {{320, 320}, 18, 1}};
+    s.pieces = {{.line = {{318, 480}, {320, 480}}, .from = 0, .to = 1}, {.line = {}, .from = 1, .to = 2}};
+    for (int y = 480; y >= 320; y -= 2) s.pieces[1].line.emplace_back(320, y);
+    const Glyph g = copied_glyph(ink, s, {{{0, false}, {1, false}}}, U'x');
+    ASSERT_EQ(g.strokes.size(), 1u);
+    for (const Vec2& p : g.strokes[0].median) EXPECT_LT(glm::distance(p, Vec2(320, 400)), 100);
+}
+
 TEST(Copy, PicturesWithoutInkAreNamed) {
     EXPECT_ANY_THROW(ink_of(photo_of({}), "photo"));
     EXPECT_ANY_THROW(

@@ -20,6 +20,8 @@ constexpr int kRingPasses = 8;         // smoothing of outlines
 constexpr double kLeastHalf = 1;       // units
 constexpr double kLongestHead = 90;    // units
 constexpr double kCornerHead = 1.25;   // of the half width: a corner lies so far from the middle of a head
+constexpr double kAlong = 0.1;         // cosine to the way of the stroke above which a ray runs along it
+constexpr int kCurvePoints = 8;        // of the curve of a head
 constexpr double kInset = 12;          // units between the begin of a centre line and the edge
 
 constexpr double kAreaCell = 2, kAreaMargin = 8;  // units, of the cells of a font's area
@@ -56,7 +58,7 @@ std::optional<Vec2> corner_of(const std::vector<Station>& in, const std::vector<
                       ahead = std::min<std::size_t>(on.size() - 1, kDirection);
     const Vec2 a = in.back().centre, u = a - in[in.size() - 1 - back].centre, b = on.front(), v = b - on[ahead];
     const double cross = u.x * v.y - u.y * v.x;
-    if (cross == 0 || std::abs(cross) < 0.3 * glm::length(u) * glm::length(v)) return std::nullopt;
+    if (!(std::abs(cross) > 0.3 * glm::length(u) * glm::length(v))) return std::nullopt;  // nor an arm of one point
     const Vec2 d = b - a;
     const double t = (d.x * v.y - d.y * v.x) / cross, s = (d.x * u.y - d.y * u.x) / cross;
     if (t < 0 || s < 0) return std::nullopt;
@@ -113,7 +115,8 @@ double ray(const InkClearance& room, const Vec2& p, const Vec2& d) {
     return far;
 }
 
-/// Where a wide head reaches out to the upper left, a brush landed there: the line begins in that corner.
+/// Where a wide head reaches out to the upper left, a brush landed there: the line begins in that corner, and bends
+/// into its way. A ray that runs along the stroke finds no corner: a path from there would go to and fro in the head.
 void begin_in_corner(CopiedLine& line, const InkClearance& room) {
     std::vector<Station>& p = line.points;
     const Vec2 down = p[std::min<std::size_t>(p.size() - 1, 20)].centre - p[0].centre;
@@ -129,14 +132,25 @@ void begin_in_corner(CopiedLine& line, const InkClearance& room) {
     Vec2 to(0);
     for (double degrees = 95; degrees <= 200; degrees += 5) {
         const Vec2 d(std::cos(degrees * kDegree), std::sin(degrees * kDegree));
+        if (glm::dot(d, down) > kAlong * glm::length(down)) continue;
         if (const double reach = ray(room, p[head].centre, d); reach > far) far = reach, to = d;
     }
     if (far < kCornerHead * p[head].half || far >= kLongestHead) return;
-    const Station begin{p[head].centre + (far - kInset) * to, kLeastHalf};
-    p.erase(p.begin(), p.begin() + static_cast<std::ptrdiff_t>(head));
-    line.through.erase(line.through.begin(), line.through.begin() + static_cast<std::ptrdiff_t>(head));
-    p.insert(p.begin(), begin);
-    line.through.insert(line.through.begin(), 0);
+    const Station begin{p[head].centre + (far - kInset) * to, kLeastHalf}, bend = p[head];
+    if (glm::distance(begin.centre, p[0].centre) < kInset) return;  // it begins there
+    std::size_t end = head;
+    while (end + 1 < p.size() / 2 && glm::distance(p[end].centre, bend.centre) < far) ++end;
+    const Station joined = p[end];
+    std::vector<Station> curve;
+    for (int k = 0; k < kCurvePoints; ++k) {
+        const double t = static_cast<double>(k) / kCurvePoints, u = 1 - t;
+        curve.push_back({u * u * begin.centre + 2 * u * t * bend.centre + t * t * joined.centre,
+                         u * u * begin.half + 2 * u * t * bend.half + t * t * joined.half});
+    }
+    p.erase(p.begin(), p.begin() + static_cast<std::ptrdiff_t>(end));
+    line.through.erase(line.through.begin(), line.through.begin() + static_cast<std::ptrdiff_t>(end));
+    p.insert(p.begin(), curve.begin(), curve.end());
+    line.through.insert(line.through.begin(), curve.size(), 0);
 }
 
 double power_of(const Station& q, const Vec2& p) {

@@ -290,10 +290,11 @@ class KnuckleFit {
             step[k] = part.is_head() || (k != 2 && k != 3) ? kSlopeStep : -kSlopeStep;
             response.set_slope(k, step[k], near.distances(draw(part, step)));
         }
-        Change best{};
+        Change best{}, before{};
         for (int n = 0; n < kDrawn; ++n) {
             const Change next = find(near, response);
-            if (next == best) break;
+            if (next == best || next == before) break;  // a drawing of it would teach nothing
+            before = next;
             const std::vector<float> inked = draw(part, next);
             const Worth own = worth_of(inked);
             const bool better = own.value > value;
