@@ -4,6 +4,7 @@
 
 #include "brush/preset/preset.h"
 #include "core/geometry/types.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// Query table over the root bending moment and the Fixed Shape Method: the tuft's shape for a moment M, rotated in
