@@ -374,6 +374,25 @@ TEST(FilmLaws, AShrinkingSpotDriesAsItsSizeSays) {
     EXPECT_NEAR(left[1] / left[0], 1, 0.01);
 }
 
+TEST(FilmLaws, WhatWasFoundOfTheAirIsForgottenByAStrokeThatBeginsDry) {
+    std::uint64_t hashes[2];
+    for (const bool other : {false, true}) {
+        Wet s(testing::sheet(0.02, 1, 160));
+        FilmParams p = in_still_air();
+        if (other) {
+            s.wet([](const Vec3& at) { return glm::length(at) < 8e-3 ? 3 : 0; });
+            s.film.advance(s.canvas, 2, p);
+            s.canvas.clear();
+        }
+        s.film.advance(s.canvas, 0.05, p);  // nothing is wet yet
+        s.wet([](const Vec3& at) { return glm::length(at) < 1e-3 ? 3 : 0; });
+        p.drying.goes_on = true;
+        s.film.advance(s.canvas, 2, p);
+        hashes[other] = s.canvas.hash();
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+}
+
 // Two spots of radius R whose middles are d apart: each is in vapour of the other, ΔC = F / (2 π d) of 1 / (4 R).
 TEST(FilmLaws, SpotsNearEachOtherDryMoreSlowly) {
     const double radius = 2e-3, apart = 7e-3;

@@ -32,6 +32,7 @@ constexpr double kPartOfWait = 0.025, kLeastOfLongWait = 1.5;
 // Steps are doubled where Σ curvature² keeps the one part, or no texel changes by so much of its thickness; halved
 // where it keeps but the other. What decays by 1 / (1 + z) in place of e^−z has a rate that is off by z / 2.
 constexpr double kSlow = 0.9, kFast = 0.8, kLittle = 2e-3, kMuch = 5e-3, kVeryMuch = 0.1;
+constexpr double kLongWait = 5;  // seconds
 
 /// What lies on a tile and on those around it.
 using Near = std::array<const Sources*, 9>;
@@ -71,7 +72,16 @@ struct WetFilm::State : TileList {
     struct LevelSteps {
         bool in_work = false;         ///< the step in work is one of them
         double seconds = kLevelStep;  ///< of the next one
-        double least = kLevelStep, most = kLongestLevelStep;
+        double shortest = kShortestLevelStep, least = kLevelStep, most = kLongestLevelStep;
+
+        /// `slower`: how many times as slowly it dries.
+        void set(double least_step, double slower) {
+            const double longer = slower > 1 ? 2 * slower : 1;
+            least = least_step * longer;
+            most = kLongestLevelStep * longer;
+            shortest = slower > 1 ? least : kShortestLevelStep * least / kLevelStep;
+            seconds = std::clamp(seconds, slower > 1 ? least : 0, most);
+        }
     };
 
     std::vector<std::uint8_t> reported;
@@ -467,10 +477,8 @@ struct WetFilm::State : TileList {
             if (solved.bends > kSlow || solved.change < kLittle)
                 level_steps.seconds = std::min(2 * level_steps.seconds, level_steps.most);
             else if (solved.bends < kFast && solved.change > kMuch)
-                level_steps.seconds =
-                    std::max(0.5 * level_steps.seconds, solved.change > kVeryMuch
-                                                            ? kShortestLevelStep * level_steps.least / kLevelStep
-                                                            : level_steps.least);
+                level_steps.seconds = std::max(0.5 * level_steps.seconds,
+                                               solved.change > kVeryMuch ? level_steps.shortest : level_steps.least);
         }
     }
 
@@ -523,8 +531,9 @@ void WetFilm::keep_within(FreeFn free) {
 FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& params, const BeforeFn& before,
                             const ProgressFn& progress) {
     FilmReport report;
-    if (!canvas.wet() || !(seconds > 0)) return report;
     State& s = *state_;
+    if (!params.drying.goes_on) s.air.forget();
+    if (!canvas.wet() || !(seconds > 0)) return report;
     s.reported.assign(s.map.n_slots(), 0);
     s.forget_relief();
     s.tension.start(params, s.map);
@@ -546,10 +555,9 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
         if (s.sources.empty()) s.prepare(canvas);
         s.air.look(s, s.sources);
         // What dries at the rims is all that moves in a long wait: slowly, where the air is full.
-        s.level_steps.least = least > kLevelStep ? least * s.air.slower() : least;
-        s.level_steps.most = kLongestLevelStep * s.air.slower();
-        s.level_steps.seconds = std::min(s.level_steps.seconds, s.level_steps.most);
-        StepChoice chosen = choose_step(params, s, {s.any_relief, running, s.air.slower()}, left);
+        const double slower = seconds > kLongWait ? s.air.slower() : 1;
+        s.level_steps.set(least, slower);
+        StepChoice chosen = choose_step(params, s, {s.any_relief, running, slower}, left);
         const double dt = chosen.dt;
         s.air.slow_down(chosen.step);
         s.air.pass(dt);

@@ -24,7 +24,8 @@ constexpr std::size_t kGrain = 8;   // tiles
 constexpr double kSeconds = 4;      // for which factors hold, where they are 1
 constexpr double kLeastAge = 0.25;  // s: factors are not looked for more often, however wet areas grow
 constexpr double kGrown = 1.25;     // tiles, over those of before
-constexpr double kSlowest = 16;
+// Steps are doubled while less than these parts of what the rates say dry in them, in the mean and at most.
+constexpr double kAsFast = 1.4, kFastest = 8, kSlowest = 16;
 constexpr float kBlockPart = 0.4f;  // of a cube: blocks are smaller, by which its inside is resolved
 // A charge that lies evenly on a square of side 1 has the mean potential kSquare, in units of which one at its middle
 // has 1 / (2 π r); on a disc kEven times that of one that finds its own place, 1 / 4 R. Between two squares it is
@@ -154,14 +155,14 @@ std::size_t StillAir::KeyHash::operator()(const Key& k) const {
 void StillAir::start(const FilmParams& params, const atlas::TexelMap& map) {
     params_ = params;
     used_ = params.drying.vapour > 0 && params.drying.still_air > 0 && params.drying.evaporation > 0;
-    if (!used_) {
-        slower_ = 1;
-        return;
-    }
+    if (!used_) return forget();
     places_.resize(map.n_slots());
     planes_.resize(map.n_slots());
-    if (params.drying.goes_on && factors_.size() == map.n_slots()) return;
-    factors_.assign(map.n_slots(), {});
+    factors_.resize(map.n_slots());
+}
+
+void StillAir::forget() {
+    factors_.clear();
     found_ = false;
     slower_ = 1;
 }
@@ -482,12 +483,14 @@ void StillAir::find(const TileList& tiles, std::span<const Sources> sources) {
         tiles_[i].given = 0, tiles_[i].greatest = 0;
         set_factors(tiles.map, tiles.list[i].slot, &tiles_[i]);
     });
-    double given = 0;
+    double given = 0, rate = 0;
+    for (const float r : rates_) rate += static_cast<double>(r);
     float most = 0;
     for (const Tile& tile : tiles_) given += tile.given, most = std::max(most, tile.greatest);
     factor_ = given > 0 ? flux / given : 1;
     slower_ = 1;
-    while (given > 0 && slower_ < kSlowest && factor_ * static_cast<double>(most) * slower_ < 0.5) slower_ *= 2;
+    const double mean = rate > 0 ? flux / rate : 1, greatest = factor_ * static_cast<double>(most);
+    while (slower_ < kSlowest && mean * slower_ < kAsFast && greatest * slower_ < kFastest) slower_ *= 2;
 }
 
 void StillAir::slow_down(Step& step) const {

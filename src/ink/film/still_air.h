@@ -49,7 +49,9 @@ class StillAir {
   public:
     static constexpr std::size_t kMostPatches = 400;
 
-    /// Begins a call of `WetFilm::advance`.
+    /// Drops what was found: a stroke or wait begins, whether anything is wet then or not.
+    void forget();
+    /// Begins a call of `WetFilm::advance` on a wet canvas.
     void start(const FilmParams& params, const atlas::TexelMap& map);
     /// Finds factors if those of before hold no more.
     void look(const TileList& tiles, std::span<const Sources> sources);

@@ -15,7 +15,8 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr double kDryLimit = 3600;  // seconds, in which all is dry where the air moves
+constexpr double kDryLimit = 3600;               // seconds, in which all is dry where the air moves
+constexpr double kStillAirDryLimit = 48 * 3600;  // in which still air dries a full plate
 
 // Tiles of a canvas that are about to change.
 LayerTiles tiles_of(std::uint32_t layer, const ink::Canvas& canvas) {
@@ -105,7 +106,7 @@ void perform_drying(PaintedModel& painted, std::uint64_t id, const Dry& wait, st
             if (wait.seconds > 0)
                 film.advance(canvas, wait.seconds, params, copy, progress);
             else
-                film.dry(canvas, params, copy, params.drying.still_air > 0 ? kLongestWait : kDryLimit, progress);
+                film.dry(canvas, params, copy, params.drying.still_air > 0 ? kStillAirDryLimit : kDryLimit, progress);
         } catch (...) {
             painted.restore(undo.tiles);
             throw;
