@@ -28,11 +28,10 @@ constexpr int kLines = 20;  // of memory asked for at once: as many as the proce
 constexpr float kFilmsPerMicrometre = 0.1f;
 // Seconds of a step by tension.
 constexpr double kLevelEvery = 0.05, kLevelStep = 0.1, kLongestLevelStep = 1.6, kShortestLevelStep = 0.0125;
-constexpr double kPartOfWait = 0.025, kLeastOfLongWait = 1.5;
+constexpr double kPartOfWait = 0.025, kLeastOfLongWait = 1.5, kLongWait = 5;
 // Steps are doubled where Σ curvature² keeps the one part, or no texel changes by so much of its thickness; halved
 // where it keeps but the other. What decays by 1 / (1 + z) in place of e^−z has a rate that is off by z / 2.
 constexpr double kSlow = 0.9, kFast = 0.8, kLittle = 2e-3, kMuch = 5e-3, kVeryMuch = 0.1;
-constexpr double kLongWait = 5;  // seconds
 
 /// What lies on a tile and on those around it.
 using Near = std::array<const Sources*, 9>;
@@ -73,12 +72,10 @@ struct WetFilm::State : TileList {
         bool in_work = false;         ///< the step in work is one of them
         double seconds = kLevelStep;  ///< of the next one
         double shortest = kShortestLevelStep, least = kLevelStep, most = kLongestLevelStep;
-
-        /// `slower`: how many times as slowly it dries.
+        /// `slower`: how many times as slowly it dries, which is all that moves in a long wait.
         void set(double least_step, double slower) {
             const double longer = slower > 1 ? 2 * slower : 1;
-            least = least_step * longer;
-            most = kLongestLevelStep * longer;
+            least = least_step * longer, most = kLongestLevelStep * longer;
             shortest = slower > 1 ? least : kShortestLevelStep * least / kLevelStep;
             seconds = std::clamp(seconds, slower > 1 ? least : 0, most);
         }
@@ -544,8 +541,7 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     double beads = 0;  // seconds that they have not run yet
     bool running = glm::length(params.weight.down) > 0;
     // A long wait ends with what is level; how it became so needs not be followed at every moment.
-    const double least = std::clamp(kPartOfWait * seconds, kLevelStep, kLeastOfLongWait);
-    s.level_steps.seconds = least;
+    const double least = s.level_steps.seconds = std::clamp(kPartOfWait * seconds, kLevelStep, kLeastOfLongWait);
     double rippled = params.ripples.unlevelled;  // seconds in which ripples have not levelled yet
     for (double left = seconds; left > 0 && !s.list.empty();) {
         if (progress && !progress("drying", 1 - left / seconds)) {
@@ -554,7 +550,6 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
         }
         if (s.sources.empty()) s.prepare(canvas);
         s.air.look(s, s.sources);
-        // What dries at the rims is all that moves in a long wait: slowly, where the air is full.
         const double slower = seconds > kLongWait ? s.air.slower() : 1;
         s.level_steps.set(least, slower);
         StepChoice chosen = choose_step(params, s, {s.any_relief, running, slower}, left);
