@@ -336,6 +336,20 @@ TEST(FilmLaws, DropsSideBySideDryAsDropsAndNotAsOneSpot) {
     }
 }
 
+TEST(FilmLaws, ASheetFarWiderThanItsStillAirDriesByItsArea) {
+    const double side = 0.06;
+    for (const double still : {2e-3, 0.5e-3, 0.1e-3}) {
+        FilmParams p = in_still_air();
+        p.drying.still_air = still;
+        Wet s(testing::sheet(side, 1, 128));
+        s.wet([](const Vec3&) { return 300; });
+        const FilmReport report = dry_for_a_moment(s, p);
+        // Patches are up to 4 mm: the layer over one is cut off at its edge and counts as another's in part only.
+        EXPECT_NEAR(report.evaporated / 2 / still_air(side * side / still / (2 * std::numbers::pi)), 1.2, 0.25)
+            << still;
+    }
+}
+
 TEST(FilmLaws, LessStillAirTakesUpMore) {
     // ∇² c = c / δ² round a ball of radius a: 4 π a (1 + a / δ).
     for (const double still : {0.02, 0.01, 0.005}) {

@@ -64,8 +64,8 @@ TUFT_CLONES void column_of(float* __restrict k, const VapourPatches& patches, st
         const float over_plane = plane * (1 + wide + kWide * more * more);
         k[i] = over_plane * (1 - q * log_of(1 + 1 / q)) * exp_minus(screen / over_plane);
     }
-    const float own = 1 / (4 * radius1);
-    k[j] = own * exp_minus(screen / own);
+    const float own = 1 / (4 * radius1), wide_by = kPi * radius1 / (2 * thickness);
+    k[j] = own * larger(exp_minus(screen / own), 2 / wide_by * (1 - 1 / wide_by));
 }
 
 TUFT_CLONES void add_column(float* __restrict to, const float* __restrict k, float part, std::size_t n) {
