@@ -30,9 +30,9 @@ struct VapourPatches {
 ///
 /// where r⃗ = x_i − x_j and δ is the thickness of the still air, metres. A disc alone has F = 4 R; the first factor of G
 /// is that over a plane, with it as the mean over near patches, the second Neumann's function of a ball, on which
-/// vapour has more room. K_ii is that of R_i alone, G = 1 / 4 R, and no less than δ / A (1 − 2 δ / π R) of an even layer
-/// that gives off over δ: of places wider than δ, F is their area over δ within 40 %. By conjugate gradients. Cost: about 20 n²
-/// products. The same bits on every machine.
+/// vapour has more room. K_ii is that of R_i alone, G = 1 / 4 R, and no less than δ / A (1 − 2 δ / π R) of an even
+/// layer that gives off over δ: of places wider than δ, F is their area over δ within 40 %. By conjugate gradients.
+/// Cost: about 20 n² products. The same bits on every machine.
 std::vector<float> still_air_fluxes(const VapourPatches& patches, float thickness);
 
 /// Finds how fast texels dry in still air [HuLarson2002]: a spot of radius R gives off 4 R D (c_s − c_∞), so that by
