@@ -75,7 +75,7 @@ TEST(Law, CountsOfAnEvenMotionAreNotFelt) {
         }
 }
 
-// Where a hand has come to rest between two counts nothing tells. x is what is measured, never a whole count off.
+// Where a hand rests between two counts is unknown. x is what is measured, never a whole count off.
 TEST(Law, AnArmThatStandsIsKnownToHalfACount) {
     for (const DeviceLimits& limits : device_presets())
         for (int part = 0; part < 20; ++part) {

@@ -123,12 +123,12 @@ std::vector<FerruleSpine> ferrule_spines(const Preset& p) {
     return out;
 }
 
-HairLengths::HairLengths(const Preset& p) : toe_(p.toe / p.length), slant_(p.slant / p.length) {
-    if (slant_ > 0) outermost_ = 2 * ferrule_spines(p).back().x / p.width;
+HairLengths::HairLengths(const Preset& p) : preset_(p) {
+    if (p.slant > 0) outermost_ = 2 * ferrule_spines(p).back().x / p.width;
 }
 
 double HairLengths::at(double s) const {
-    return std::min(1.0, 1 - toe_ * (1 - std::sqrt(std::max(0.0, 1 - s * s))) - 0.5 * slant_ * (1 - s / outermost_));
+    return std::min(1.0, length_at(preset_, s, outermost_));
 }
 
 FerruleSpine single_spine(const Preset& p) {

@@ -55,12 +55,14 @@ inline bool has_one_skin(const Preset& preset) {
 /// Lengths of the hair of a row: less towards the edges of a toe and towards one end of a blade.
 class HairLengths {
   public:
+    /// `preset` must outlive it.
     explicit HairLengths(const Preset& preset);
     /// Returns the length at s = x/a, −1 to 1, over the tuft's.
     double at(double s) const;
 
   private:
-    double toe_, slant_, outermost_ = 1;  // over the tuft's length; s of the last spine of a blade
+    const Preset& preset_;
+    double outermost_ = 1;  // s of the last spine of a blade
 };
 
 /// Returns the strip that is the whole mouth of a wide ferrule.

@@ -52,8 +52,8 @@ class Turn {
     void follow(const Vec3& position, const Vec3& string, double length);
     /// Returns the lift by the greatest turn up to here, from the string's direction at the beginning, and by the
     /// shortest that the string became or becomes if the path goes on straight. Motions shorter than λ/20 are tremor
-    /// and turn nothing. In a turn by less than 158° the string stays longer than 0.36; the hair is in
-    /// the air while it is shorter than that by 0.06 of what is missing to 1.
+    /// and turn nothing. In a turn by less than 158° the string stays longer than 0.36; the hair is in the air where
+    /// the string is within 0.06 (1 − its shortest) of its shortest.
     TurnLift lift(const LiftedTurns& lifted) const;
 
   private:

@@ -24,7 +24,7 @@ constexpr double kAlongBorder = 0.1;     // of the border
 constexpr double kSpeckOfInk = 1.0 / 400;
 constexpr double kSpeck = 1.0 / 3, kHole = 1.0 / 6;  // of the square of a stroke's width
 constexpr double kCell = 2;                          // units
-constexpr double kDarkest = 0.02;                    // of the paper's light that is told apart
+constexpr double kDarkest = 0.02;                    // of the paper's light that a photo resolves
 constexpr double kMarked = 0.5;                      // density of all channels from which a pixel has a colour
 constexpr double kOtherColour = 0.35;                // radians between the densities of two colours; of vermilion 0.54
 
