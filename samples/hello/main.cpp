@@ -43,9 +43,10 @@ int main(int argc, char** argv) {
     if (argc != 3) return std::fputs("usage: tuft-hello MODEL OUT.glb\n", stderr), 2;
     try {
         stroke::ModelOptions options;
-        options.repair.metres_per_unit = io::metres_per_unit_of(argv[1]).value_or(1e-3);
+        mesh::PolygonSoup file = io::read_model(argv[1]);
+        options.repair.metres_per_unit = io::metres_per_unit(file).value_or(1e-3);
         options.unwrap.size = 512;  // texels along the side of the atlas
-        const stroke::Model model = stroke::prepare_model(io::read_model(argv[1]), options);
+        const stroke::Model model = stroke::prepare_model(std::move(file), options);
         stroke::Document painting(model, {.substrate = "porcelain"});
         painting.paint(wavy_line(model));
         const stroke::Appearance& shown = painting.appearance();

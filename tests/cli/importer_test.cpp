@@ -52,7 +52,7 @@ TEST_F(Importer, ThatCrashesIsOneLine) {
 
 TEST_F(Importer, ThatHandsOverNonsenseIsOneLine) {
     expect_refused(inspect_by("exit 0"), "its importer handed over a damaged model");
-    expect_refused(inspect_by("echo tuft scene 2; head -c 100000 /dev/zero"),
+    expect_refused(inspect_by("echo tuft scene 3; head -c 100000 /dev/zero"),
                    "its importer handed over a damaged model");
     expect_refused(inspect_by("printf 'fault: has\\na\\tfault\\033[1m'; exit 1"), "has?a?fault?[1m");
 }

@@ -45,13 +45,33 @@ TEST_F(ModelFiles, OptionsOfCadAreRefusedForOtherFiles) {
     EXPECT_EQ(fine.error_lines(), 1) << fine.err;
 }
 
-TEST_F(ModelFiles, OptionsThatAFileStatesItselfAreSaidToDoNothing) {
-    const Ran cad = tuft("inspect --unit m --up y " + corpus("stp/box.stp"));
-    EXPECT_EQ(cad.status, 0);
-    for (const char* option : {"--unit is left aside: box.stp", "--up is left aside: box.stp"})
-        EXPECT_NE(cad.err.find(option), std::string::npos) << cad.err;
+TEST_F(ModelFiles, AUnitThatIsSaidGoesBeforeTheOneThatTheFileStates) {
+    // 30 x 20 x 10, stated as millimetres.
+    const Ran cad = tuft("inspect --json --unit in --up y " + corpus("stp/box.stp"));
+    ASSERT_EQ(cad.status, 0) << cad.err;
+    EXPECT_NEAR(json::parse(cad.out)["size_mm"][0].get<double>(), 30 * 25.4, 1e-3);
+    for (const char* note : {"box.stp is read in inches (--unit), not in millimetres as it states: 25.4 times as large",
+                             "--up is left aside: box.stp"})
+        EXPECT_NE(cad.err.find(note), std::string::npos) << cad.err;
     const Ran plain = tuft("inspect --unit mm --up z " + model("bowl.ply"));
-    EXPECT_EQ(plain.err.find("left aside"), std::string::npos) << plain.err;
+    EXPECT_EQ(plain.err, "");
+    EXPECT_EQ(tuft("inspect --unit mm " + corpus("stp/box.stp")).err, "") << "as it states";
+}
+
+// A GLB whose numbers are millimetres: its project, and the next version of the file, are in millimetres too.
+TEST_F(ModelFiles, AProjectKeepsTheUnitThatWasSaidOfItsModel) {
+    ASSERT_EQ(tuft("unwrap " + model("sheet.ply") + " --unit m --atlas-size 256 -o " + path("wrong.glb")).status, 0);
+    const std::string strokes = write("s.inkml", stroke_file("0 0 0"));
+    const std::string paint = "paint " + path("wrong.glb") + " --strokes " + strokes + " --no-cache --atlas-size 256";
+    ASSERT_EQ(tuft(paint + " --unit mm --project " + path("p.tuft")).status, 0);
+    const Ran again = tuft("replay --json " + path("p.tuft") + " --model " + path("wrong.glb"));
+    ASSERT_EQ(again.status, 0) << again.err;
+    EXPECT_EQ(json::parse(again.out)["fit"]["mismatches"], 0);
+    EXPECT_NE(again.err.find("wrong.glb is read in millimetres (--unit), not in metres as it states"),
+              std::string::npos)
+        << again.err;
+    const Ran stated = tuft("replay --json " + path("p.tuft") + " --unit m --model " + path("wrong.glb"));
+    EXPECT_EQ(stated.err.find("as it states"), std::string::npos) << stated.err;
 }
 
 TEST_F(ModelFiles, AnAssemblyIsPaintedAndKeepsItsNamesAndColoursInGlb) {

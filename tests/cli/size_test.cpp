@@ -74,5 +74,27 @@ TEST_F(Size, AProjectKeepsWhatItHasWhereNewStrokesAreRefused) {
     EXPECT_EQ(read(path("out.tuft")), before);
 }
 
+// A drawing of areas needs no brush, so no tuft is too long: it is painted, and the unit is doubted.
+TEST_F(Size, AreasOnAModelInAMistakenUnitAreReported) {
+    const std::string svg =
+        write("a.svg",
+              "<svg xmlns='http://www.w3.org/2000/svg' width='60mm' height='60mm' viewBox='0 0 60 60'>"
+              "<path d='M5 5H55V55H5Z' fill='#1c4fa0'/></svg>");
+    const auto painted = [&](double side) {
+        const Ran ran = tuft("paint " + cube(side) + " --unit mm --strokes " + svg +
+                             " --on top --place-width 60 --atlas-size 128 --no-cache --project " + path("out.tuft"));
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        return ran.err;
+    };
+    const std::string doubt = "is its unit another one? (see --unit";
+    EXPECT_NE(painted(80 / 25.4).find(doubt), std::string::npos);
+    EXPECT_EQ(painted(80).find(doubt), std::string::npos);
+    for (const double side : {80 / 25.4, 80 * 25.4}) {
+        const Ran ran = tuft("replay " + path("out.tuft") + " --unit mm --no-cache --model " + cube(side));
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        EXPECT_NE(ran.err.find(doubt), std::string::npos) << ran.err;
+    }
+}
+
 }  // namespace
 }  // namespace tuft::test

@@ -24,7 +24,6 @@ inline TrialModel load_trial_model(const std::string& name) {
     TrialModel f;
     const std::string path = source_folder() + "/models/" + file + ".ply";
     mesh::RepairOptions options;
-    options.metres_per_unit = io::metres_per_unit_of(path).value_or(1e-3);
     f.mesh = std::make_unique<mesh::TriangleMesh>(mesh::build_surface(io::read_model(path), options).mesh);
     f.surface = std::make_unique<mesh::SurfaceQuery>(*f.mesh);
     f.place = edge ? place_at_edge(*f.surface, name) : place_above(*f.surface, name);

@@ -81,7 +81,7 @@ class Cad : public testing::Test {
 };
 
 mesh::Surface surface_of(const fs::path& path, const CadReading& how = {}) {
-    return mesh::build_surface(read_model(path, how), {.metres_per_unit = metres_per_unit_of(path).value()});
+    return mesh::build_surface(read_model(path, how), {.metres_per_unit = 1});
 }
 
 /// By Open CASCADE, mm².
@@ -138,7 +138,7 @@ TEST_F(Cad, ABoxIsClosedAndHasItsAreaAndPlace) {
     EXPECT_NEAR(area_mm2(surface.mesh), 2200, 2200 * 1e-6);  // float positions
     EXPECT_NEAR(surface.mesh.bounds.lo.x, 0.1, 1e-7);
     EXPECT_NEAR(surface.mesh.bounds.hi.z, 0.015, 1e-8);
-    EXPECT_EQ(metres_per_unit_of("a.STP"), 1.0);
+    EXPECT_TRUE(states_unit("a.STP"));
     for (const char* name : {"a.step", "a.stp", "a.iges", "a.IGS"})
         EXPECT_TRUE(is_model_file(name) && is_cad_file(name));
     EXPECT_FALSE(is_cad_file("a.stl"));
@@ -146,10 +146,23 @@ TEST_F(Cad, ABoxIsClosedAndHasItsAreaAndPlace) {
 
 TEST_F(Cad, AFileHasTheLengthsOfItsUnit) {
     const TopoDS_Shape box = BRepPrimAPI_MakeBox(25.4, 50.8, 76.2).Shape();
-    for (const char* unit : {"MM", "INCH", "M", "CM", "FT"}) {
-        const mesh::TriangleMesh mesh = surface_of(step(box, std::string(unit) + ".step", unit)).mesh;
+    const std::map<const char*, const char*> units{
+        {"MM", "mm"}, {"INCH", "in"}, {"M", "m"}, {"CM", "cm"}, {"FT", "ft"}};
+    for (const auto& [unit, name] : units) {
+        const fs::path path = step(box, std::string(unit) + ".step", unit);
+        const mesh::TriangleMesh mesh = surface_of(path).mesh;
         EXPECT_NEAR(mesh.bounds.hi.x, 0.0254, 1e-8) << unit;
         EXPECT_NEAR(mesh.bounds.hi.z, 0.0762, 1e-8) << unit;
+        EXPECT_NEAR(read_model(path).stated_unit / metres_per(name).value(), 1, 1e-9) << unit;
+    }
+}
+
+TEST_F(Cad, AnIgesFileStatesItsUnit) {
+    for (const auto& [unit, name] : {std::pair("MM", "mm"), {"IN", "in"}, {"M", "m"}, {"CM", "cm"}, {"FT", "ft"}}) {
+        IGESControl_Writer writer(unit, 0);
+        EXPECT_TRUE(writer.AddShape(BRepPrimAPI_MakeBox(25.4, 50.8, 76.2).Shape()));
+        EXPECT_TRUE(writer.Write((folder_ / "box.igs").c_str()));
+        EXPECT_NEAR(read_model(folder_ / "box.igs").stated_unit / metres_per(name).value(), 1, 1e-9) << unit;
     }
 }
 
@@ -360,6 +373,8 @@ TEST_F(Cad, IsReadByItsContentWhateverItsNameSays) {
     for (const char* name : {"iges.step", "step.igs"})
         // The chord tolerance cuts the rounded edges short.
         EXPECT_NEAR(area_mm2(surface_of(folder_ / name).mesh) / area_of(bracket()), 1, 1e-3) << name;
+    fs::rename(folder_ / "iges.step", folder_ / "part.txt");
+    EXPECT_EQ(metres_per_unit(read_model(folder_ / "part.txt")), 1.0) << "its unit, too";
 }
 
 /// A part of somebody else, as it was shipped, or written as STEP.

@@ -70,7 +70,9 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 mesh::Surface surface_of(const fs::path& path) {
-    return mesh::build_surface(read_model(path), {.metres_per_unit = metres_per_unit_of(path).value_or(1)});
+    mesh::PolygonSoup soup = read_model(path);
+    const double unit = metres_per_unit(soup).value_or(1);
+    return mesh::build_surface(std::move(soup), {.metres_per_unit = unit});
 }
 
 Box bounds_of(const mesh::PolygonSoup& soup) {
@@ -173,13 +175,10 @@ INSTANTIATE_TEST_SUITE_P(, Box123,
 TEST(ForeignFormats, AreOfMetresAndKnownByTheirExtensionInAnyCase) {
     for (const char* name : {"a.fbx", "a.DAE", "a.3mf", "a.X3D", "a.glb"}) {
         EXPECT_TRUE(is_model_file(name)) << name;
-        EXPECT_EQ(metres_per_unit_of(name), 1.0) << name;
+        EXPECT_TRUE(states_unit(name)) << name;
     }
     // VRML is in metres by its standard, CAD writes it in millimetres; its axes are fixed.
-    for (const char* name : {"a.obj", "a.stl", "a.wrl", "a.VRML"})
-        EXPECT_EQ(metres_per_unit_of(name), std::nullopt) << name;
-    EXPECT_TRUE(has_fixed_up_axis("a.wrl"));
-    EXPECT_FALSE(has_fixed_up_axis("a.obj"));
+    for (const char* name : {"a.obj", "a.stl", "a.wrl", "a.VRML"}) EXPECT_FALSE(states_unit(name)) << name;
     EXPECT_FALSE(is_model_file("a.blend"));
 }
 
@@ -217,6 +216,28 @@ TEST(ForeignFormats, ADaeHasItsUnitAndItsAxes) {
     const Box turned = bounds_of(read_model(folder.write("turned.dae", replaced(text, "Z_UP", "Y_UP"))));
     EXPECT_NEAR(turned.hi.z, plain.hi.y, 1e-5);
     EXPECT_NEAR(turned.lo.y, -plain.hi.z, 1e-5);
+}
+
+// A unit that a person says is that of the numbers in the file, whatever it states.
+TEST(ForeignFormats, AUnitThatIsSaidGoesBeforeTheOneThatTheFileStates) {
+    const Folder folder;
+    const std::string dae = text_of(corpus("dae/box.dae")),
+                      x3d = replaced(text_of(corpus("x3d/box.x3d")), "</head>",
+                                     "<unit category='length' name='foot' conversionFactor='0.3048'/></head>");
+    folder.write("inch.dae", replaced(dae, "<unit name=\"meter\" meter=\"1\"", "<unit meter = '0.0254' name=\"i\""));
+    folder.write("none.dae", replaced(dae, "<unit name=\"meter\" meter=\"1\"/>", ""));
+    const std::vector<std::pair<fs::path, double>> files{
+        {corpus("fbx/text.fbx"), 0.0254}, {corpus("3mf/materials.3mf"), 0.0254},   {folder.path / "inch.dae", 0.0254},
+        {folder.path / "none.dae", 1},    {folder.write("foot.x3d", x3d), 0.3048}, {corpus("gltf/binary.glb"), 1}};
+    for (const auto& [path, stated] : files) {
+        const mesh::PolygonSoup soup = read_model(path);
+        EXPECT_NEAR(soup.stated_unit / stated, 1, 1e-6) << path << ": floats";
+        EXPECT_EQ(metres_per_unit(soup), 1.0) << path;
+        EXPECT_NEAR(metres_per_unit(soup, "cm").value() * stated, 0.01, 1e-8) << path;
+    }
+    const mesh::PolygonSoup vrml = read_model(corpus("wrl/box.wrl"));
+    EXPECT_EQ(metres_per_unit(vrml), std::nullopt) << "VRML 2.0 states no unit";
+    EXPECT_EQ(metres_per_unit(vrml, "cm"), 0.01);
 }
 
 TEST(ForeignFormats, A3mfHasItsUnitItsComponentsAndAMaterialForEachTriangle) {

@@ -82,6 +82,7 @@ TEST(Project, ModelAndAtlasComeBackToTheBit) {
     EXPECT_EQ(back.source, model.source);
     EXPECT_EQ(back.frame.unit, model.frame.unit);
     EXPECT_EQ(back.frame.y_up, model.frame.y_up);
+    EXPECT_EQ(back.frame.unit_overrides, model.frame.unit_overrides);
     EXPECT_EQ(back.substrate, model.substrate);
     EXPECT_EQ(back.mesh.positions, model.mesh.positions);
     EXPECT_EQ(back.mesh.triangles, model.mesh.triangles);

@@ -43,8 +43,8 @@ TEST(ReadModel, FormatsAreRecognisedByContentThenByExtension) {
     write_file(folder / "hello.txt", text.data(), text.size());
     EXPECT_THROW(read_model(folder / "hello.txt"), Error);
     EXPECT_THROW(read_model(folder / "missing.obj"), Error);
-    EXPECT_EQ(metres_per_unit_of("a/m.GLB"), 1.0);
-    EXPECT_EQ(metres_per_unit_of("m.obj"), std::nullopt);
+    EXPECT_TRUE(states_unit("a/m.GLB"));
+    EXPECT_FALSE(states_unit("m.obj"));
 }
 
 TEST(ReadModel, ShellsCompleteTheNamesOfAllFilesThatAreRead) {

@@ -11,7 +11,7 @@ namespace tuft::io::testing {
 inline ProjectModel sample_model() {
     ProjectModel model;
     model.source = "bowl.ply";
-    model.frame = {.unit = "in", .y_up = true};
+    model.frame = {.unit = "in", .y_up = true, .unit_overrides = true};
     model.mesh = cylinder();
     model.mesh.vertex_colours.assign(model.mesh.n_vertices(), {10, 20, 30, 255});
     model.atlas = cylinder_atlas(model.mesh);

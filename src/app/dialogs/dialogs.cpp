@@ -86,27 +86,36 @@ void note_beside(const std::string& text) {
     ImGui::TextDisabled("%s", text.c_str());
 }
 
-/// Unit and upward axis of a file, where its format leaves them open.
-void frame_rows(Ui& ui, const Inspected& in, FileFrame& frame) {
-    static const std::vector<std::string> units{"um", "mm", "cm", "m", "in", "ft"}, axes{"z", "y"};
-    const std::string& guess = in.summary.unit.unit;
-    if (io::is_cad_file(in.path)) {  // each CAD file states its own, and its reader converts
-        fact(ui, "Unit of the file", ui.tr("stated in the file"));
-        return;
-    }
+/// Unit of the file's numbers. One that a person chooses goes before the one that the file states.
+void unit_row(Ui& ui, const Inspected& in, FileFrame& frame) {
+    static const std::vector<std::string> units{"um", "mm", "cm", "m", "in", "ft"},
+        stated{"as stated", "um", "mm", "cm", "m", "in", "ft"};
     name_row(ui, "Unit of the file");
-    ImGui::BeginDisabled(in.unit_fixed);
-    ui.combo("Unit", frame.unit, units, 90);
-    ImGui::EndDisabled();
-    note_beside(in.unit_fixed         ? ui.tr("the format says so")
-                : frame.unit == guess ? ui.tr("guessed from the size")
-                                      : std::string(ui.tr("guessed")) + ": " + guess);
+    if (!in.unit_stated()) {
+        const std::string& guess = in.summary.unit.unit;
+        ui.combo("Unit", frame.unit, units, 90);
+        return note_beside(frame.unit == guess ? ui.tr("guessed from the size")
+                                               : std::string(ui.tr("guessed")) + ": " + guess);
+    }
+    std::string unit = frame.unit_overrides ? frame.unit : stated.front();
+    if (ui.combo("Unit", unit, stated, 90)) {
+        frame.unit_overrides = unit != stated.front();
+        frame.unit = frame.unit_overrides ? unit : "m";
+    }
+    note_beside(ui.tr(frame.unit_overrides ? "in place of what the file states" : "stated in the file"));
+}
+
+/// Unit and upward axis of a file.
+void frame_rows(Ui& ui, const Inspected& in, FileFrame& frame) {
+    static const std::vector<std::string> axes{"z", "y"};
+    unit_row(ui, in, frame);
+    if (io::is_cad_file(in.path)) return;  // its axes are those of the model
     name_row(ui, "Upward axis");
-    std::string up = frame.y_up || in.up_fixed ? "y" : "z";
-    ImGui::BeginDisabled(in.up_fixed);
+    std::string up = frame.y_up || in.soup.turned_up ? "y" : "z";
+    ImGui::BeginDisabled(in.soup.turned_up);
     if (ui.combo("Up", up, axes, 90)) frame.y_up = up == "y";
     ImGui::EndDisabled();
-    if (in.up_fixed) note_beside(ui.tr("the format says so"));
+    if (in.soup.turned_up) note_beside(ui.tr("the format says so"));
 }
 
 /// Groups and chord tolerance of a CAD file. Returns true when it is to be read anew.
@@ -167,9 +176,9 @@ void open_dialog(Session& s) {
     Ui& ui = s.ui;
     const Inspected& in = *s.project.inspected;
     const mesh::MeshSummary& m = in.summary;
-    const double factor = metres_per(s.project.options.frame.unit).value_or(m.metres_per_unit) / m.metres_per_unit;
+    const double factor = in.metres_per_unit(s.project.options.frame) / m.metres_per_unit;
     Vec3 size = m.bounds.size() * factor * 1e3;
-    if (s.project.options.frame.y_up && !in.up_fixed) std::swap(size.y, size.z);
+    if (s.project.options.frame.y_up && !in.soup.turned_up) std::swap(size.y, size.z);
     fact(ui, "File", in.path.filename().string());
     fact(ui, "Size", print("%.1f \xc3\x97 %.1f \xc3\x97 %.1f mm", size.x, size.y, size.z));
     fact(ui, "Triangles", grouped(m.n_triangles));

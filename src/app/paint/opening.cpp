@@ -73,6 +73,10 @@ struct Opening::Job {
     }
 };
 
+double Inspected::metres_per_unit(const FileFrame& frame) const {
+    return io::metres_per_unit(soup, unit_stated() && !frame.unit_overrides ? "" : frame.unit).value_or(kMillimetre);
+}
+
 namespace {
 
 Inspected inspect_file(const fs::path& path, const io::CadReading& cad, const ProgressFn& progress) {
@@ -82,12 +86,9 @@ Inspected inspect_file(const fs::path& path, const io::CadReading& cad, const Pr
     out.soup = io::read_model(path, cad);
     Box bounds;
     for (const Vec3& p : out.soup.points) bounds.add(p);
-    const auto fixed = io::metres_per_unit_of(path);
-    out.unit_fixed = fixed.has_value();
-    out.up_fixed = io::has_fixed_up_axis(path);
     const mesh::UnitGuess guess = mesh::guess_unit(bounds);
     mesh::RepairOptions repair;
-    repair.metres_per_unit = fixed.value_or(guess.metres_per_unit);
+    repair.metres_per_unit = io::metres_per_unit(out.soup).value_or(guess.metres_per_unit);
     repair.progress = progress;
     const mesh::Surface surface = mesh::build_surface(out.soup, repair);
     out.summary = mesh::summarise(surface, repair.metres_per_unit);
@@ -119,6 +120,7 @@ void copy_strokes(const fs::path& former, bool follow, PaintWork& work, const Pr
     work.motion = change.whole;
     work.fit = {Message("{}.", stroke::describe(stroke::total_of(fits, work.mismatches)))};
     work.fit.insert(work.fit.end(), named.notes.begin(), named.notes.end());
+    if (const Message doubt = stroke::size_doubt(before, *work.model->query); !doubt.empty()) work.fit.push_back(doubt);
     if (change.whole) work.fit.push_back(Message("The revised model is the former one {}.", describe(*change.whole)));
     for (const stroke::PartMotion& part : change.parts)
         work.fit.push_back(Message("The part '{}' is {}.", part.name, describe(part.motion)));
@@ -135,9 +137,8 @@ PaintWork prepare_model(Inspected in, const OpenOptions& options, const fs::path
                         const ProgressFn& progress) {
     PaintWork work;
     stroke::ModelOptions prepare;
-    const auto fixed = io::metres_per_unit_of(in.path);
-    prepare.repair.metres_per_unit = fixed.value_or(metres_per(options.frame.unit).value_or(kMillimetre));
-    prepare.repair.y_up = options.frame.y_up && !io::has_fixed_up_axis(in.path);
+    prepare.repair.metres_per_unit = in.metres_per_unit(options.frame);
+    prepare.repair.y_up = options.frame.y_up && !in.soup.turned_up;
     prepare.unwrap.size = options.atlas_size;
     prepare.cache = stroke::shared_model_cache();
     prepare.progress = progress;

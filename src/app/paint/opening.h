@@ -22,8 +22,10 @@ struct Inspected {
     mesh::PolygonSoup soup;
     mesh::MeshSummary summary;     ///< lengths in metres, by the guessed unit
     std::vector<Message> defects;  ///< found and repaired, one line each
-    bool unit_fixed = false;       ///< the format defines the unit
-    bool up_fixed = false;         ///< and its axes
+
+    bool unit_stated() const { return soup.stated_unit > 0; }
+    /// Metres per unit of the soup's points by the choice of a person, else as the file states it.
+    double metres_per_unit(const FileFrame& frame) const;
 };
 
 /// Choices of the opening dialog.

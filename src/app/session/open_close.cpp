@@ -71,11 +71,13 @@ void take_inspected(ProjectState& project, Inspected inspected, const PaintThrea
     const mesh::MeshSummary& m = inspected.summary;
     const bool revises = !project.revision.source.empty();
     FileFrame& frame = project.options.frame;
-    // A revised file has the unit of the one before, where that was in a format without one.
-    if (!(revises && work && !io::metres_per_unit_of(work->source()))) frame.unit = m.unit.unit;
-    if (inspected.unit_fixed) frame.unit = "m";
+    // A revised file has the unit of the one before, where that stated none or a wrong one.
+    const bool keeps = revises && work && (work->frame().unit_overrides || !io::states_unit(work->source()));
+    if (!keeps) frame.unit = m.unit.unit;
+    frame.unit_overrides = keeps && inspected.unit_stated() && work->frame().unit_overrides;
+    if (inspected.unit_stated() && !frame.unit_overrides) frame.unit = "m";
     if (!revises) {
-        const double factor = metres_per(frame.unit).value_or(m.metres_per_unit) / m.metres_per_unit;
+        const double factor = inspected.metres_per_unit(frame) / m.metres_per_unit;
         project.options.atlas_size = proposed_size(m.area * factor * factor);
         project.options.turned_round = false;
         frame.y_up = false;

@@ -66,7 +66,8 @@ CLI::App* add_write(CLI::App& app, Write& write) {
 CLI::App* add_inspect(CLI::App& app, Inspect& inspect) {
     auto* command = app.add_subcommand("inspect", "say what is in a mesh or a project, and what is wrong with it");
     allow_shipped(command->add_option("FILE", inspect.file, "mesh or project"))->required();
-    add_reading(command, inspect, "unit of the model file (default: a guess from its size)");
+    add_reading(command, inspect,
+                "unit of the numbers in the model file (default: as it states, else a guess from its size)");
     auto* spot =
         add_point(command, "--at", inspect.at_mm, "say which pigments lie at this point of a project, in millimetres");
     command->add_option("--save-ink", inspect.save_ink, "write them as an ink (.toml), for --ink")->needs(spot);
@@ -95,7 +96,8 @@ CLI::App* add_decimate(CLI::App& app, Decimate& decimate) {
                      "collapse no edge that moves the surface by more, in millimetres, as a mean; single vertices may "
                      "lie some times as far, and how far is printed")
         ->check(number_in(1e-9, kFarthestMm, "POSITIVE"));
-    add_reading(command, decimate, "unit of the model file (default: a guess from its size)");
+    add_reading(command, decimate,
+                "unit of the numbers in the model file (default: as it states, else a guess from its size)");
     return command;
 }
 
@@ -264,7 +266,8 @@ CLI::App* add_render(CLI::App& app, Render& render) {
     allow_shipped(command->add_option("FILE", render.file, "mesh or project"))->required();
     command->add_option("-o,--output", render.output, "picture (.png); with --turntable a number is added")->required();
     command->add_option("--turntable", render.turntable, "draw N pictures all round")->check(number_in(1, 3600));
-    add_reading(command, render, "unit of a model file (default: a guess from its size)");
+    add_reading(command, render,
+                "unit of the numbers in a model file (default: as it states, else a guess from its size)");
     add_recolouring(command, render.recolouring);
     command->add_option("--material", render.material, "porcelain, clay, ... (default: the project's)");
     add_view(command, render.view);

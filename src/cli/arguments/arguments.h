@@ -19,9 +19,9 @@ inline Vec3 vector_of(const std::vector<double>& v) {
     return {v[0], v[1], v[2]};
 }
 
-/// How a model file is read. Empty: the project's, else the default.
+/// How a model file is read. Empty: as the file states it, else the default.
 struct FileReading {
-    std::string unit;     ///< um … ft
+    std::string unit;     ///< um … ft, of the numbers in the file
     std::string up;       ///< y or z
     std::string sides;    ///< as `mesh::open_sides_of`
     double chord_mm = 0;  ///< of CAD surfaces; 0: by the size

@@ -63,7 +63,11 @@ void add_store(CLI::App* app, Surface& s) {
 }
 
 void add_reading(CLI::App* app, FileReading& reading, const std::string& what) {
-    app->add_option("--unit", reading.unit, what)->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}));
+    app->add_option("--unit", reading.unit,
+                    what +
+                        "; of a file that states another one, such as a GLB that was written in millimetres, this "
+                        "one counts")
+        ->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}));
     app->add_option("--up", reading.up,
                     "axis of the model file that points up: z, or y, as many modellers write it; points "
                     "on the command line are with z up: (x, y, z) of a file with y up is (x, -z, y)")
@@ -83,7 +87,7 @@ void add_reading(CLI::App* app, FileReading& reading, const std::string& what) {
 }
 
 void add_surface(CLI::App* app, Surface& s) {
-    add_reading(app, s, "unit of the model file (default: a guess from its size)");
+    add_reading(app, s, "unit of the numbers in the model file (default: as it states, else a guess from its size)");
     app->add_option("--atlas-size", s.atlas_size, "texels along the side of the atlas")
         ->check(number_in(1, kMostTexels, "POSITIVE"));
     app->add_option("--texel-size", s.texel_size_mm, "size of a texel in millimetres")

@@ -37,14 +37,12 @@ int run(const Decimate& a) {
         throw UsageError("--output is the model itself: give the working copy another name");
     if (a.triangles == 0 && !(a.error_mm > 0)) throw UsageError("say how far: --triangles N, --error MM or both");
     Console console(a.common.quiet);
-    tell_left_aside(a.model, a, console);
-    const auto [model, frame] = load_bare(a.model, a, console);
+    const auto [model, frame, fixed] = load_bare(a.model, a, console);
     const mesh::TriangleMesh& full = *model.mesh;
     mesh::PolygonSoup soup = mesh::decimate(full, {.n_triangles = a.triangles, .error = a.error_mm * kMillimetre});
     const std::size_t n = soup.n_polygons();
     if (!soup.polygon_groups.empty()) console.note("groups and materials are not written to a PLY file");
     // A PLY file says no unit: it is read in millimetres, or in what its size suggests, as the model was.
-    const bool fixed = io::metres_per_unit_of(a.model).has_value();
     const double unit = fixed ? kMillimetre : metres_per(frame.unit).value_or(kMillimetre);
     mesh::PolygonSoup file = soup;
     for (Vec3& p : file.points) p /= unit;

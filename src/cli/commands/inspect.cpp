@@ -257,17 +257,16 @@ struct MeshFacts {
 constexpr std::uint32_t kPage = 2048;  // texels that the file's UVs are measured on
 
 /// Reads and repairs a mesh.
-MeshFacts mesh_facts(const Inspect& a, const ProgressFn& progress) {
+MeshFacts mesh_facts(const Inspect& a, Console& console) {
     mesh::PolygonSoup soup = io::read_model(a.file, cad_reading(a.file, a));
     Box bounds;
     for (const Vec3& p : soup.points) bounds.add(p);
     const mesh::UnitGuess guess = mesh::guess_unit(bounds);
-    mesh::RepairOptions options;
-    const auto fixed = io::metres_per_unit_of(a.file);
-    options.metres_per_unit = fixed.value_or(metres_per(a.unit.empty() ? guess.unit : a.unit).value_or(kMillimetre));
-    options.y_up = a.up == "y" && !io::has_fixed_up_axis(a.file);
-    if (!a.sides.empty()) options.sides = mesh::open_sides_of(a.sides);
-    options.progress = progress;
+    FileReading how = a;
+    if (!io::metres_per_unit(soup, a.unit)) how.unit = guess.unit;
+    const bool stated = soup.stated_unit > 0;
+    mesh::RepairOptions options = repair_of(soup, a.file, how, console);
+    options.progress = console.progress();
     mesh::Surface surface;
     try {
         surface = mesh::build_surface(std::move(soup), options);
@@ -276,8 +275,13 @@ MeshFacts mesh_facts(const Inspect& a, const ProgressFn& progress) {
     }
     MeshFacts facts{
         .summary = mesh::summarise(surface, options.metres_per_unit), .uvs = {}, .quality = {}, .uv_notes = {}};
-    if (fixed)
-        facts.summary.unit = {.unit = "m", .metres_per_unit = *fixed, .second = {}, .sentence = "as the file says"};
+    if (stated && a.unit.empty())
+        facts.summary.unit = {.unit = "m", .metres_per_unit = 1, .second = {}, .sentence = "as the file says"};
+    else if (stated)
+        facts.summary.unit = {.unit = a.unit,
+                              .metres_per_unit = options.metres_per_unit,
+                              .second = {},
+                              .sentence = "not as the file says (--unit)"};
     if (facts.summary.has_uvs) {
         facts.uvs = atlas::check_file_uvs(surface.mesh, kPage);
         facts.quality = atlas::measure(surface.mesh, facts.uvs.atlas);
@@ -334,9 +338,8 @@ int run(const Inspect& a) {
     if (a.file.extension() == ".tuft" || io::is_project(a.file)) return inspect_project(a);
     if (!a.at_mm.empty()) throw UsageError("--at looks at a project, not at a mesh");
     Console console(a.common.quiet);
-    const MeshFacts facts = mesh_facts(a, console.progress());
+    const MeshFacts facts = mesh_facts(a, console);
     console.clear();
-    tell_left_aside(a.file, a, console);
     if (a.common.json)
         print_json(mesh_json(facts, a.file));
     else

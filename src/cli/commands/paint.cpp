@@ -398,7 +398,6 @@ int paint(const Paint& a, const StrokeSource& source) {
     Surface surface = a.surface;
     if (const double texel = a.drawing.auto_texel ? texel_for_detail(strokes, a) : 0; texel > 0)
         surface.texel_size_mm = texel / kMillimetre;
-    if (!before) tell_left_aside(a.model, surface, console);
     Loaded loaded = before ? Loaded{std::move(before->model), before->frame} : load_model(a.model, surface, console);
     stroke::Model model = std::move(loaded.model);
     outputs.frame = loaded.frame;
@@ -429,6 +428,8 @@ int paint(const Paint& a, const StrokeSource& source) {
         strokes = draw_with_pointer(strokes, painting, *model.query, a.hand.pixel_mm * kMillimetre, console);
     }
     check_sizes(strokes, painting, model, a);
+    if (const Message doubt = stroke::size_doubt(strokes, *model.query); !doubt.empty())
+        console.note("warning: " + doubt.text() + " (see --unit, --place-width)");
     std::optional<io::Project> project = output_project(a, in_place, before.get(), outputs.frame, painting, strokes);
     Painted painted = paint_strokes(strokes, painting, project, a, console, start);
     painted.prepared = prepared;

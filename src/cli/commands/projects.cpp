@@ -128,14 +128,12 @@ int write_strokes(const Export& a, Console& console) {
 
 stroke::Model replay_model(const Replay& a, OpenProject& project, Console& console) {
     Surface surface = a.surface;
-    const FileFrame frame = frame_of(a.surface.unit, a.surface.up, project.frame);
-    surface.unit = frame.unit;
-    surface.up = frame.y_up ? "y" : "z";
     if (surface.pages == 0) surface.pages = project.model.atlas.pages;
     if (!a.model.empty()) {
-        tell_left_aside(a.model, a.surface, console);
         if (surface.atlas_size == 0 && surface.texel_size_mm == 0) surface.atlas_size = project.model.atlas.page_size();
-        return load_model(a.model, surface, console).model;
+        Loaded revised = load_model(a.model, surface, console, &project.frame);
+        project.frame = revised.frame;
+        return std::move(revised.model);
     }
     if (surface.atlas_size == 0 && surface.texel_size_mm == 0 && !surface.new_uv && surface.seams == "free")
         return std::move(project.model);
@@ -173,8 +171,8 @@ int run(const Replay& a) {
     Console console(a.common.quiet);
     const auto reserved = reserve(a.out_project, console);
     const auto project = open_project(a.project, io::Access::read, console, model_cache(a.surface));
-    outputs.frame = a.model.empty() ? project->frame : frame_of(a.surface.unit, a.surface.up, project->frame);
     const stroke::Model model = replay_model(a, *project, console);
+    outputs.frame = project->frame;
 
     stroke::Document painting(model, {.tip_lags = tip_lag_cache(a.surface)});
     painting.use(project->substrate);
@@ -275,7 +273,6 @@ int run(const Render& a) {
         show_layers(*painting, a.view.layers);
         apply_recolouring(project->file, *painting, a.recolouring, console);
     } else {
-        tell_left_aside(a.file, a, console);
         bare = load_bare(a.file, a, console).model;
         if (mesh::has_colours(*bare.mesh) && a.material.empty()) {
             stroke::ModelOptions options;

@@ -166,6 +166,8 @@ RevisedStrokes replay_strokes(const Replay& a, const OpenProject& project, strok
         out.notes = std::move(named.notes);
         const Message fault = stroke::size_fault(out.former, lengths_of(painting), former, revised);
         if (!fault.empty()) throw Error(a.model.string(), Message("{} (see --unit)", fault));
+        if (const Message doubt = stroke::size_doubt(former, revised); !doubt.empty())
+            out.notes.push_back(Message("{} (see --unit)", doubt));
         out.change = stroke::find_change(former, revised, freedom_of(a));
     }
     out.followed = out.former;

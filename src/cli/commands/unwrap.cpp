@@ -19,8 +19,7 @@ int run(const Unwrap& a) {
     check_output(a.output);
     check_output(a.picture);
     Console console(a.common.quiet);
-    tell_left_aside(a.model, a.surface, console);
-    const auto [model, frame] = load_bare(a.model, a.surface, console);
+    const auto [model, frame, stated] = load_bare(a.model, a.surface, console);
     atlas::UnwrapOptions options = model_options(a.surface, console).unwrap;
     options.progress = console.progress();
     atlas::Unwrapped unwrapped;

@@ -167,9 +167,10 @@ ContactModel load_contact_model(const std::filesystem::path& file) {
     std::filesystem::path path = file.empty() ? "bowl" : file;
     if (!path.has_extension() && !path.has_parent_path()) path = data_folder() / "models" / (path.string() + ".ply");
     mesh::RepairOptions options;
-    options.metres_per_unit = io::metres_per_unit_of(path).value_or(1e-3);
+    mesh::PolygonSoup soup = io::read_model(path);
+    options.metres_per_unit = io::metres_per_unit(soup).value_or(kMillimetre);
     ContactModel model;
-    model.mesh = std::make_unique<mesh::TriangleMesh>(mesh::build_surface(io::read_model(path), options).mesh);
+    model.mesh = std::make_unique<mesh::TriangleMesh>(mesh::build_surface(std::move(soup), options).mesh);
     model.surface = std::make_unique<mesh::SurfaceQuery>(*model.mesh);
     return model;
 }

@@ -32,10 +32,6 @@ namespace fs = std::filesystem;
 
 namespace tuft::cli {
 
-FileFrame frame_of(const std::string& unit, const std::string& up, const FileFrame& otherwise) {
-    return {.unit = unit.empty() ? otherwise.unit : unit, .y_up = up.empty() ? otherwise.y_up : up == "y"};
-}
-
 io::CadReading cad_reading(const fs::path& path, const FileReading& how) {
     if ((how.chord_mm > 0 || !how.groups.empty()) && io::is_model_file(path) && !io::is_cad_file(path))
         throw UsageError("--chord and --groups are for STEP and IGES files, and " + path.string() + " is none");
@@ -70,21 +66,39 @@ struct Read {
     FileFrame frame;
 };
 
-Read read_file(const fs::path& path, const FileReading& how, mesh::RepairOptions& repair, Console& console) {
+std::string unit_name(double metres) {
+    for (const auto& [unit, name] : {std::pair("um", "micrometres"),
+                                     {"mm", "millimetres"},
+                                     {"cm", "centimetres"},
+                                     {"m", "metres"},
+                                     {"in", "inches"},
+                                     {"ft", "feet"}})
+        if (std::abs(metres / *metres_per(unit) - 1) < 1e-6) return name;
+    return fmt::format("units of {:g} m", metres);
+}
+
+Read read_file(const fs::path& path, const FileReading& how, const FileFrame* former, mesh::RepairOptions& repair,
+               Console& console) {
     report(repair.progress, "reading", 0);
-    Read read{io::read_model(path, cad_reading(path, how)), frame_of(how.unit, how.up)};
+    Read read{io::read_model(path, cad_reading(path, how)), {}};
     report(repair.progress, "reading", 1);
-    const auto fixed = io::metres_per_unit_of(path);
-    if (how.unit.empty() && !fixed) {
+    const bool stated = read.soup.stated_unit > 0;
+    FileReading known = how;
+    if (former && known.unit.empty() && (!stated || former->unit_overrides)) known.unit = former->unit;
+    if (former && known.up.empty() && former->y_up && !read.soup.turned_up) known.up = "y";
+    read.frame.unit_overrides = stated && !known.unit.empty();
+    if (!io::metres_per_unit(read.soup, known.unit)) {
         Box bounds;
         for (const Vec3& p : read.soup.points) bounds.add(p);
         const mesh::UnitGuess guess = mesh::guess_unit(bounds);
         if (guess.unit != read.frame.unit) console.note(guess.sentence + " (see --unit)");
-        read.frame.unit = guess.unit;
+        known.unit = guess.unit;
     }
-    repair.metres_per_unit = fixed.value_or(metres_per(read.frame.unit).value_or(kMillimetre));
-    repair.y_up = read.frame.y_up && !io::has_fixed_up_axis(path);  // the reader has turned it
-    if (!how.sides.empty()) repair.sides = mesh::open_sides_of(how.sides);
+    if (!known.unit.empty()) read.frame.unit = known.unit;
+    read.frame.y_up = known.up == "y";
+    ProgressFn progress = std::move(repair.progress);
+    repair = repair_of(read.soup, path, known, console);
+    repair.progress = std::move(progress);
     return read;
 }
 
@@ -98,12 +112,20 @@ void tell_sides(const mesh::RepairReport& repairs, Console& console) {
 
 }  // namespace
 
-void tell_left_aside(const fs::path& path, const FileReading& how, Console& console) {
-    if (!how.unit.empty() && io::metres_per_unit_of(path))
-        console.note("--unit is left aside: " + path.filename().string() +
-                     " is read in the unit that it states (OBJ, PLY, STL, OFF and VRML files state none)");
-    if (!how.up.empty() && io::has_fixed_up_axis(path))
-        console.note("--up is left aside: " + path.filename().string() + " is read with the axes that it states");
+mesh::RepairOptions repair_of(const mesh::PolygonSoup& soup, const fs::path& path, const FileReading& how,
+                              Console& console) {
+    mesh::RepairOptions repair;
+    repair.metres_per_unit = io::metres_per_unit(soup, how.unit).value_or(kMillimetre);
+    repair.y_up = how.up == "y" && !soup.turned_up;
+    if (!how.sides.empty()) repair.sides = mesh::open_sides_of(how.sides);
+    const std::string name = path.filename().string();
+    if (soup.stated_unit > 0 && std::abs(repair.metres_per_unit - 1) > 1e-6)
+        console.note(fmt::format("{} is read in {} (--unit), not in {} as it states: {:g} times as large", name,
+                                 unit_name(*metres_per(how.unit)), unit_name(soup.stated_unit),
+                                 repair.metres_per_unit));
+    if (!how.up.empty() && soup.turned_up)
+        console.note("--up is left aside: " + name + " is read with the axes that it states");
+    return repair;
 }
 
 DiskCache tip_lag_cache(const Surface& s) {
@@ -114,15 +136,16 @@ DiskCache model_cache(const Surface& s) {
     return s.no_cache ? DiskCache() : stroke::shared_model_cache();
 }
 
-Loaded load_model(const fs::path& path, const Surface& s, Console& console) {
+Loaded load_model(const fs::path& path, const Surface& s, Console& console, const FileFrame* former) {
     stroke::ModelOptions options = model_options(s, console);
     options.cache = model_cache(s);
     options.repair.progress = options.progress;
-    Read read = read_file(path, s, options.repair, console);
+    Read read = read_file(path, s, former, options.repair, console);
     options.repair.progress = nullptr;
     if (s.plain) mesh::drop_colours(read.soup);
     try {
-        Loaded loaded{stroke::prepare_model(std::move(read.soup), options), read.frame};
+        const bool stated = read.soup.stated_unit > 0 && !read.frame.unit_overrides;
+        Loaded loaded{stroke::prepare_model(std::move(read.soup), options), read.frame, stated};
         tell_sides(loaded.model.repairs, console);
         for (const Message& warning : loaded.model.repairs.warnings) console.note("warning: " + warning.text());
         if (!loaded.model.base_colour.empty())
@@ -138,7 +161,8 @@ Loaded load_model(const fs::path& path, const Surface& s, Console& console) {
 Loaded load_bare(const fs::path& path, const FileReading& how, Console& console) {
     mesh::RepairOptions options;
     options.progress = console.progress();
-    Read read = read_file(path, how, options, console);
+    Read read = read_file(path, how, nullptr, options, console);
+    const bool stated = read.soup.stated_unit > 0 && !read.frame.unit_overrides;
     stroke::Model model;
     try {
         mesh::Surface surface = mesh::build_surface(std::move(read.soup), options);
@@ -150,7 +174,7 @@ Loaded load_bare(const fs::path& path, const FileReading& how, Console& console)
         if (what.starts_with(path.string())) throw;
         throw Error(path.string(), what);
     }
-    return {std::move(model), read.frame};
+    return {std::move(model), read.frame, stated};
 }
 
 void check_output(const fs::path& path) {

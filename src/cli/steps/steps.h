@@ -20,9 +20,6 @@
 /// Steps that several commands share. Main thread. All functions throw `Error` where a file cannot be read or written.
 namespace tuft::cli {
 
-/// Returns unit and axes of a model file by the arguments, else `otherwise`. Throws `UsageError` for unknown names.
-FileFrame frame_of(const std::string& unit, const std::string& up, const FileFrame& otherwise = {});
-
 /// Returns the atlas and UV options of `stroke` for these arguments.
 stroke::ModelOptions model_options(const Surface& surface, Console& console);
 
@@ -35,18 +32,23 @@ DiskCache model_cache(const Surface& surface);
 struct Loaded {
     stroke::Model model;
     FileFrame frame;
+    bool unit_stated = false;  ///< by the file, and nobody said another one
 };
 
 /// Returns how the surfaces of a CAD file become triangles. Throws `UsageError` where the options say it of another
 /// file.
 io::CadReading cad_reading(const std::filesystem::path& path, const FileReading& how);
 
-/// Says which of --unit and --up do nothing because a file of this format states it itself.
-void tell_left_aside(const std::filesystem::path& path, const FileReading& how, Console& console);
+/// Returns how the points of a file that was read become metres, z up, by the arguments, then by the file. Reports a
+/// unit that goes before the one that the file states, and an axis that the file states itself.
+mesh::RepairOptions repair_of(const mesh::PolygonSoup& soup, const std::filesystem::path& path, const FileReading& how,
+                              Console& console);
 
-/// Reads, repairs and unwraps a model file. Its unit is that of the arguments or the format, else it is guessed from
+/// Reads, repairs and unwraps a model file. Its unit is that of the arguments or the file, else it is guessed from
 /// the size. A guess other than millimetres is reported.
-Loaded load_model(const std::filesystem::path& path, const Surface& surface, Console& console);
+/// `former`: unit and axis of the file that this one revises, which hold where nobody says others.
+Loaded load_model(const std::filesystem::path& path, const Surface& surface, Console& console,
+                  const FileFrame* former = nullptr);
 
 /// Reads and repairs a model file, without an atlas and without surface queries.
 Loaded load_bare(const std::filesystem::path& path, const FileReading& how, Console& console);
@@ -124,7 +126,7 @@ io::OpenOptions open_options(io::Access access, Console& console);
 /// paths are skipped.
 std::optional<io::ProjectLock> reserve(const std::filesystem::path& path, Console& console);
 /// Returns the model that the strokes of a project are painted on again: the stored one, with a new atlas if asked for,
-/// or a revised file. The stored one is moved out of `project`.
+/// or a revised file, whose frame becomes that of `project`. The stored one is moved out of `project`.
 stroke::Model replay_model(const Replay& arguments, OpenProject& project, Console& console);
 std::unique_ptr<OpenProject> open_project(const std::filesystem::path& path, io::Access access, Console& console,
                                           const DiskCache& cache = stroke::shared_model_cache());

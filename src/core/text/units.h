@@ -19,6 +19,7 @@ std::optional<double> metres_per(std::string_view unit);
 struct FileFrame {
     std::string unit = "mm";
     bool y_up = false;
+    bool unit_overrides = false;  ///< `unit` was said of a file that states another one
 };
 
 }  // namespace tuft

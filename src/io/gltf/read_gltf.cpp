@@ -186,6 +186,8 @@ class Gatherer {
         group_faces();
         drop_plain_materials(soup_);
         keep_scene();
+        soup_.stated_unit = 1;
+        soup_.turned_up = true;
         return std::move(soup_);
     }
 

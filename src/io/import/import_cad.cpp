@@ -8,13 +8,20 @@
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <IGESCAFControl_Reader.hxx>
+#include <IGESData_IGESModel.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <NCollection_DataMap.hxx>
 #include <STEPCAFControl_Reader.hxx>
+#include <STEPConstruct_UnitContext.hxx>
+#include <STEPControl_Reader.hxx>
 #include <ShapeAnalysis_ShapeTolerance.hxx>
 #include <Standard_OutOfMemory.hxx>
+#include <StepData_StepModel.hxx>
+#include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
+#include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
+#include <StepRepr_GlobalUnitAssignedContext.hxx>
 #include <TDF_LabelSequence.hxx>
 #include <TDF_Tool.hxx>
 #include <TDataStd_Name.hxx>
@@ -93,7 +100,27 @@ class NamedBytes {
 
 using Document = Handle(TDocStd_Document);
 
-void read_step(std::span<const char> bytes, Document& document) {
+/// Metres in the unit of length of the file's first shapes that state one.
+double step_unit(const STEPControl_Reader& reader) {
+    using Bounded = StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx;
+    using Bare = StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext;
+    const Handle(StepData_StepModel) model = reader.StepModel();
+    for (Standard_Integer i = 1; !model.IsNull() && i <= model->NbEntities(); ++i) {
+        Handle(StepRepr_GlobalUnitAssignedContext) units;
+        if (const auto bounded = Handle(Bounded)::DownCast(model->Value(i)); !bounded.IsNull())
+            units = bounded->GlobalUnitAssignedContext();
+        else if (const auto bare = Handle(Bare)::DownCast(model->Value(i)); !bare.IsNull())
+            units = bare->GlobalUnitAssignedContext();
+        if (units.IsNull()) continue;
+        STEPConstruct_UnitContext factors;
+        factors.ComputeFactors(units);
+        if (factors.LengthDone()) return factors.LengthFactor() * kMillimetre;
+    }
+    return kMillimetre;
+}
+
+/// Both return the metres in the unit of the file.
+double read_step(std::span<const char> bytes, Document& document) {
     STEPCAFControl_Reader reader;
     Interface_Static::SetIVal("read.stepcaf.subshapes.name", 1);
     reader.SetColorMode(true);
@@ -108,9 +135,10 @@ void read_step(std::span<const char> bytes, Document& document) {
     std::istream stream(&buffer);
     if (reader.ChangeReader().ReadStream("model.stp", stream) != IFSelect_RetDone || !reader.Transfer(document))
         throw std::runtime_error(kNotCad);
+    return step_unit(reader.Reader());
 }
 
-void read_iges(std::span<const char> bytes, Document& document) {
+double read_iges(std::span<const char> bytes, Document& document) {
     IGESCAFControl_Reader reader;
     reader.SetReadVisible(true);  // what the file hides is no part of the model
     reader.SetColorMode(true);
@@ -119,6 +147,7 @@ void read_iges(std::span<const char> bytes, Document& document) {
     const NamedBytes file(bytes);
     if (reader.ReadFile(file.name().c_str()) != IFSelect_RetDone || !reader.Transfer(document))
         throw std::runtime_error(kNotCad);
+    return reader.IGESModel()->GlobalSection().UnitValue() * kMillimetre;
 }
 
 std::string name_of(const TDF_Label& label) {
@@ -407,11 +436,10 @@ FileScene import_cad(std::string_view format, std::span<const char> bytes, const
     ::Message::DefaultMessenger()->ChangePrinters().Clear();
     try {
         Document document = new TDocStd_Document("BinXCAF");
-        if (format == "igs")
-            read_iges(bytes, document);
-        else
-            read_step(bytes, document);
-        return CadScene(document, request).run();
+        const double unit = format == "igs" ? read_iges(bytes, document) : read_step(bytes, document);
+        FileScene scene = CadScene(document, request).run();
+        if (unit > 0 && std::isfinite(unit)) scene.stated_unit = unit;
+        return scene;
     } catch (const Standard_OutOfMemory&) {
         throw std::bad_alloc();
     } catch (const Standard_Failure& failure) {

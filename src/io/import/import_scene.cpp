@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -37,6 +38,34 @@ Mat4 matrix_of(const aiMatrix4x4& m) {
     return out;
 }
 
+/// Metres in the unit that an FBX file states; centimetres where it states none.
+double fbx_unit(const aiScene& scene) {
+    double centimetres = 1;
+    if (float scale = 1; scene.mMetaData && scene.mMetaData->Get("UnitScaleFactor", scale))
+        centimetres = static_cast<double>(scale);
+    else if (scene.mMetaData)
+        scene.mMetaData->Get("UnitScaleFactor", centimetres);
+    return 0.01 * (centimetres > 0 && std::isfinite(centimetres) ? centimetres : 1);
+}
+
+/// Metres in the unit that the <asset> of a DAE file states, which Assimp applies and does not tell; metres where it
+/// states none.
+double dae_unit(std::string_view text) {
+    const auto after = [&](std::string_view words) {
+        const std::size_t at = text.find(words);
+        text = at == text.npos ? std::string_view() : text.substr(at + words.size());
+    };
+    after("<asset");
+    text = text.substr(0, text.find("</asset>"));
+    after("<unit");
+    text = text.substr(0, text.find('>'));
+    after("meter");
+    text = text.substr(std::min(text.size(), text.find_first_not_of(" \t\r\n=\"'")));
+    double metres = 1;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), metres);
+    return error == std::errc() && metres > 0 && std::isfinite(metres) ? metres : 1;
+}
+
 /// From the axes and the unit of the file to metres, z up.
 Mat4 frame_of(const aiScene& scene, bool is_fbx) {
     if (!is_fbx) return Mat4(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);  // Assimp turns DAE to metres, y up
@@ -44,12 +73,6 @@ Mat4 frame_of(const aiScene& scene, bool is_fbx) {
         std::int32_t value = other;
         return scene.mMetaData && scene.mMetaData->Get(key, value) ? value : other;
     };
-    double centimetres = 1;
-    if (float scale = 1; scene.mMetaData && scene.mMetaData->Get("UnitScaleFactor", scale))
-        centimetres = static_cast<double>(scale);
-    else if (scene.mMetaData)
-        scene.mMetaData->Get("UnitScaleFactor", centimetres);
-    if (!(centimetres > 0)) centimetres = 1;
     std::array<int, 3> axis{whole("CoordAxis", 0), whole("FrontAxis", 2), whole("UpAxis", 1)};
     std::array<int, 3> sign{whole("CoordAxisSign", 1), whole("FrontAxisSign", 1), whole("UpAxisSign", 1)};
     std::array<int, 3> sorted = axis;
@@ -60,7 +83,7 @@ Mat4 frame_of(const aiScene& scene, bool is_fbx) {
     // Right is x; the front looks along −y; up is z.
     for (int k = 0; k < 3; ++k)
         out[axis[static_cast<std::size_t>(k)]][k] =
-            (sign[static_cast<std::size_t>(k)] < 0 ? -0.01 : 0.01) * (k == 1 ? -1 : 1) * centimetres;
+            (sign[static_cast<std::size_t>(k)] < 0 ? -1 : 1) * (k == 1 ? -1 : 1) * fbx_unit(scene);
     return out;
 }
 
@@ -224,7 +247,10 @@ std::vector<char> import_scene(Assimp::Importer& importer, const char* format, s
         throw std::runtime_error(words);
     }
     if (is_read) is_read();
-    return pack_scene(Walker(*scene, std::string_view(format) == "fbx").run());
+    const bool is_fbx = std::string_view(format) == "fbx";
+    FileScene out = Walker(*scene, is_fbx).run();
+    out.stated_unit = is_fbx ? fbx_unit(*scene) : dae_unit({bytes.data(), bytes.size()});
+    return pack_scene(out);
 }
 
 }  // namespace tuft::io

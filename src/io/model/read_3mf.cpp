@@ -86,6 +86,7 @@ class Reader {
     FileScene run() {
         const Part& root = part(root_part());
         const xml_node model = root.document->document_element();
+        out_.stated_unit = root.metres;
         for (const xml_node& item : child(model, "build").children()) {
             if (local_part(item.name()) == "item") add_copy(root_, item, Mat4(1.0), 0, "");
         }

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/files/extension.h"
 #include "core/files/files.h"
+#include "core/text/units.h"
 #include "io/gltf/read_gltf.h"
 #include "io/model/read_3mf.h"
 #include "io/model/read_vrml.h"
@@ -116,6 +117,13 @@ bool is_cad_file(const std::filesystem::path& path) {
     return format == Format::step || format == Format::iges;
 }
 
+bool states_unit(const std::filesystem::path& path) {
+    const std::optional<Format> format = by_extension(path);
+    if (!format) return false;
+    const std::string extension = lower_extension(path);
+    return *format > Format::off && extension != ".wrl" && extension != ".vrml";
+}
+
 mesh::PolygonSoup read_model(const std::filesystem::path& path, const CadReading& cad) {
     const std::vector<char> bytes = read_file(path);
     std::optional<Format> format = by_content({bytes.data(), std::min(bytes.size(), kHead)});
@@ -130,16 +138,10 @@ mesh::PolygonSoup read_model(const std::filesystem::path& path, const CadReading
     return soup;
 }
 
-bool has_fixed_up_axis(const std::filesystem::path& path) {
-    const std::string extension = lower_extension(path);
-    const bool plain = extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off";
-    return is_model_file(path) && !plain;
-}
-
-std::optional<double> metres_per_unit_of(const std::filesystem::path& path) {
-    const std::string extension = lower_extension(path);
-    const bool is_vrml = extension == ".wrl" || extension == ".vrml";
-    return has_fixed_up_axis(path) && !is_vrml ? std::optional(1.0) : std::nullopt;
+std::optional<double> metres_per_unit(const mesh::PolygonSoup& soup, const std::string& unit) {
+    const std::optional<double> said = metres_per(unit);
+    if (soup.stated_unit > 0) return said ? *said / soup.stated_unit : 1.0;  // points are in metres
+    return said;
 }
 
 }  // namespace tuft::io

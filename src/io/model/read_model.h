@@ -32,15 +32,15 @@ bool is_model_file(const std::filesystem::path& path);
 /// `TextureFile` and the colours of faces and vertices (materials.h).
 mesh::PolygonSoup read_model(const std::filesystem::path& path, const CadReading& cad = {});
 
+/// Returns true for the extensions of formats that state their unit: all but OBJ, PLY, STL, OFF and VRML 2.0.
+bool states_unit(const std::filesystem::path& path);
+
 /// Returns true for the extensions of CAD files, whose surfaces become triangles by a `CadReading`.
 bool is_cad_file(const std::filesystem::path& path);
 
-/// Returns the metres per unit of what `read_model` returns, where the format defines them: 1 for glTF, FBX, DAE, 3MF,
-/// X3D, STEP and IGES; else nothing. VRML 2.0 is written in metres by the standard and in millimetres by CAD.
-std::optional<double> metres_per_unit_of(const std::filesystem::path& path);
-
-/// Returns true where the format defines its axes, so that `read_model` has turned the model z up: for all but OBJ,
-/// PLY, STL and OFF.
-bool has_fixed_up_axis(const std::filesystem::path& path);
+/// Returns the metres per unit of a soup's points. `unit`: that of the file's numbers, "mm" and so on, or empty where
+/// nobody says it. It goes before the unit that the file states, which a wrong export has. Nothing where neither is
+/// there: OBJ, PLY, STL, OFF and VRML 2.0 (in metres by the standard, in millimetres by CAD) state none.
+std::optional<double> metres_per_unit(const mesh::PolygonSoup& soup, const std::string& unit = {});
 
 }  // namespace tuft::io

@@ -295,7 +295,11 @@ mesh::PolygonSoup read_vrml(const std::vector<char>& bytes, const std::filesyste
         throw Error(file, "is VRML 1.0, which tuft does not read; export it as VRML 2.0 (VRML97), X3D or GLB");
     if (!text.starts_with("#VRML V2.0") && !text.starts_with("#X3D V"))
         throw Error(file, "not VRML: the first line is neither '#VRML V2.0 utf8' nor '#X3D V3.x utf8'");
-    return read_x3d_tree(TreeBuilder(text, file).build(), path);
+    const pugi::xml_document document = TreeBuilder(text, file).build();
+    mesh::PolygonSoup soup = read_x3d_tree(document, path);
+    const xml_node head = document.first_child().child("head");
+    if (text.starts_with("#VRML") && !head.find_child_by_attribute("unit", "category", "length")) soup.stated_unit = 0;
+    return soup;
 }
 
 }  // namespace tuft::io

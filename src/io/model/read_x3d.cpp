@@ -117,7 +117,9 @@ class Reader {
         Mat4 frame(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
         for (const xml_node& unit : root.child("head").children("unit"))
             if (std::string_view(unit.attribute("category").value()) == "length")
-                frame = metres_of(unit.attribute("conversionFactor").value()) * frame;
+                out_.stated_unit *= metres_of(unit.attribute("conversionFactor").value());
+        if (!(out_.stated_unit > 0 && std::isfinite(out_.stated_unit))) out_.stated_unit = 1;
+        frame = out_.stated_unit * frame;
         frame[3][3] = 1;
         index(root);
         visit(root.child("Scene"), frame, "", 0);

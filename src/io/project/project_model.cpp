@@ -99,6 +99,7 @@ void store_model(SQLite::Database& db, const ModelToWrite& model) {
     put_array(db, "atlas", "corner_uvs", a.corner_uvs, kUv);
     put_array(db, "atlas", "triangle_chart", a.triangle_chart, kSingle);
     if (model.frame.y_up) put_array(db, "mesh", "y_up", std::vector<std::uint32_t>{1}, kSingle);
+    if (model.frame.unit_overrides) put_array(db, "mesh", "unit_overrides", std::vector<std::uint32_t>{1}, kSingle);
     store_materials(db, m);
     store_scene(db, m);
     if (a.pages > 1) put_array(db, "atlas", "pages", std::vector<std::uint32_t>{a.pages}, kSingle);
@@ -155,6 +156,7 @@ ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path,
     if (a.pages >= 1 && a.pages <= 100)
         a.udims = get_array<std::uint32_t>(db, path, "atlas", "udims", kSingle, a.pages);
     model.frame.y_up = !get_array<std::uint32_t>(db, path, "mesh", "y_up", kSingle, 1).empty();
+    model.frame.unit_overrides = !get_array<std::uint32_t>(db, path, "mesh", "unit_overrides", kSingle, 1).empty();
     for (const Vec3f& p : m.positions) m.bounds.add(Vec3(p));
     report(progress, "reading", 0.9);
     check(model, path);

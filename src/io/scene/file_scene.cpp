@@ -159,6 +159,8 @@ mesh::PolygonSoup soup_of(FileScene&& scene, const fs::path& model) {
     mesh::PolygonSoup soup = builder.finish();
     Materials materials(scene, model.has_parent_path() ? model.parent_path() : fs::path("."), soup.warnings);
     add_materials(soup, groups, materials);
+    soup.stated_unit = scene.stated_unit;
+    soup.turned_up = true;
     return soup;
 }
 

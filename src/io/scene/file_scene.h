@@ -42,6 +42,7 @@ struct FileScene {
     std::vector<FilePart> parts;
     std::vector<FileMaterial> materials;
     std::vector<Message> warnings;
+    double stated_unit = 1;  ///< metres in the unit that the file states; 0: it states none, and points are in it
 
     void add_polygon(std::uint32_t part, std::span<const std::uint32_t> points, std::span<const Vec2f> polygon_uvs);
 };

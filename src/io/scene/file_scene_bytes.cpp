@@ -10,7 +10,7 @@
 namespace tuft::io {
 namespace {
 
-constexpr std::string_view kMagic = "tuft scene 2\n";
+constexpr std::string_view kMagic = "tuft scene 3\n";
 
 class Writer {
   public:
@@ -130,6 +130,7 @@ std::vector<char> pack_scene(const FileScene& s) {
     }
     out.value(std::uint64_t{s.warnings.size()});
     for (const Message& warning : s.warnings) out.list(warning.text());
+    out.value(s.stated_unit);
     return std::move(out.bytes);
 }
 
@@ -170,6 +171,8 @@ FileScene unpack_scene(std::span<const char> bytes, const std::string& file) {
         in.list(warning);
         s.warnings.emplace_back(std::move(warning));
     }
+    in.value(s.stated_unit);
+    if (!(s.stated_unit > 0 && std::isfinite(s.stated_unit))) in.fail();
     check(s, in);
     return s;
 }

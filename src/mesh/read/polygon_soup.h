@@ -19,7 +19,7 @@ namespace tuft::mesh {
 
 /// Content of a mesh file: polygons over shared points.
 struct PolygonSoup {
-    std::vector<Vec3> points;                  ///< in the file's unit
+    std::vector<Vec3> points;                  ///< in the file's unit, or in metres where it states its unit
     std::vector<std::uint32_t> corners;        ///< point index per polygon corner, all polygons in a row
     std::vector<std::uint32_t> polygon_start;  ///< [n_polygons + 1] offsets into `corners`
     std::vector<Vec2f> corner_uvs;             ///< parallel to `corners`, v up, or empty
@@ -39,6 +39,8 @@ struct PolygonSoup {
     std::shared_ptr<SourceScene> scene;
     std::vector<std::uint32_t> polygon_parts;
     std::vector<Message> warnings;  ///< one line each: what the reader dropped, and the line numbers
+    double stated_unit = 0;  ///< metres in the unit that the file states, by which it was read; 0: it states none
+    bool turned_up = false;  ///< its format defines axes, by which the points were turned z up
 
     std::size_t n_polygons() const { return polygon_start.empty() ? 0 : polygon_start.size() - 1; }
 };

@@ -244,6 +244,19 @@ Box placed_bounds(const std::vector<JournalEntry>& entries) {
     return bounds;
 }
 
+/// The same of areas.
+Box bounds_of_areas(const std::vector<JournalEntry>& entries) {
+    Box bounds;
+    for (const JournalEntry& entry : entries) {
+        const FlatArea* area = area_of(entry);
+        if (!area) continue;
+        const Placement& p = area->placement;
+        for (const std::vector<Vec2>& ring : area->rings)
+            for (const Vec2& at : ring) bounds.add(p.origin + at.x * p.right + at.y * p.down);
+    }
+    return bounds;
+}
+
 }  // namespace
 
 Message size_fault(const std::vector<JournalEntry>& entries, const std::function<double(const std::string&)>& length_of,
@@ -269,6 +282,24 @@ Message size_fault(const std::vector<JournalEntry>& entries, const std::function
         "it is {} mm across, the strokes {} mm; the tuft of {} is {} mm long, and most of them meet no surface; is its "
         "unit another one?",
         millimetres(across), millimetres(drawing.diagonal()), longer->first, millimetres(longer->second));
+}
+
+Message size_doubt(const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised) {
+    const double before = former.mesh().bounds.diagonal(), now = revised.mesh().bounds.diagonal();
+    if (now >= kTooSmall * before && kTooSmall * now <= before) return {};
+    return Message("the revised model is {} mm across, the former one {} mm; is its unit another one?",
+                   millimetres(now), millimetres(before));
+}
+
+Message size_doubt(const std::vector<JournalEntry>& entries, const mesh::SurfaceQuery& model) {
+    Box drawing = placed_bounds(entries);
+    const Box areas = bounds_of_areas(entries);
+    if (!areas.empty()) drawing.add(areas.lo), drawing.add(areas.hi);
+    const double across = model.mesh().bounds.diagonal();
+    if (drawing.empty() || across >= kTooSmall * drawing.diagonal()) return {};
+    return Message(
+        "the model is {} mm across, the drawing {} mm, and most of it meets no surface; is its unit another one?",
+        millimetres(across), millimetres(drawing.diagonal()));
 }
 
 StrokeSamples ring_samples(const FlatArea& area, double most) {

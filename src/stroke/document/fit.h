@@ -56,6 +56,14 @@ Message size_fault(const std::vector<JournalEntry>& entries,
 Message size_fault(const std::vector<JournalEntry>& entries,
                    const std::function<double(const std::string& brush)>& length_of, const mesh::SurfaceQuery& model);
 
+/// Returns a doubt about the unit of a revised model, as a sentence for people: its diagonal is less than a quarter or
+/// more than four times the former one. Empty where there is none. It may be meant: strokes and areas follow a model
+/// that was scaled.
+Message size_doubt(const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised);
+
+/// The same of new strokes and areas: the model's diagonal is less than a quarter of the drawing's, as placed.
+Message size_doubt(const std::vector<JournalEntry>& entries, const mesh::SurfaceQuery& model);
+
 /// What a journal was made on, and what it comes to lie on. The references must outlive it.
 struct Revision {
     const mesh::SurfaceQuery &former, &revised;
