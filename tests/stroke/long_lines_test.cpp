@@ -62,7 +62,7 @@ Drawn drawn(const StrokeSamples& line, bool redips, const std::string& brush = "
     stroke.settings.endless = endless;
     std::vector<JournalEntry> entries{stroke};
     const std::vector<StrokeSamples*> drawing = drawing_in(entries, true);
-    choose_brushes(entries, drawing, 1, 0.05, {.grow = false, .fit = brush.empty()}, widths);
+    choose_brushes(entries, {drawing, 1, 0.05}, {.grow = false, .fit = brush.empty()}, widths);
     if (redips) redip_long_lines(entries, {}, widths);
     press_to_widths(entries, widths);
     Document painting(model);
@@ -116,7 +116,7 @@ TEST(LongLines, TheFilmOfAnInkIsLookedUpOnceForADrawing) {
     std::vector<std::string> asked;
     const BrushFit fit{.film = [&](const std::string& ink) { return asked.push_back(ink), 1e-5; }};
     WidthTables widths;
-    choose_brushes(entries, drawing, 1, 0.05, fit, widths);
+    choose_brushes(entries, {drawing, 1, 0.05}, fit, widths);
     EXPECT_EQ(asked.size(), 2u) << "for five lines of two inks";
     asked.clear();
     redip_long_lines(entries, fit, widths);

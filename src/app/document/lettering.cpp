@@ -81,7 +81,7 @@ std::vector<stroke::JournalEntry> entries_in_lines(const writer::Text& text, con
     for (stroke::StrokeSamples* trace : drawing) trace->placement.mapping = placement.mapping;
     const Box box = stroke::extent_of(drawing);
     stroke::place_drawing(drawing, {placement, Vec2(box.centre()), 1, false});
-    stroke::choose_brushes(entries, drawing, 1, std::max(box.size().x, box.size().y), fit, widths);
+    stroke::choose_brushes(entries, {drawing, 1, std::max(box.size().x, box.size().y)}, fit, widths);
     return entries;
 }
 
@@ -239,7 +239,7 @@ std::vector<stroke::JournalEntry> lettering_entries(const writer::Text& text, co
     } else {
         const LetteringPath& on = std::get<LetteringPath>(place);
         writer::append_along(entries, text, on.path, on.middle, hand, progress);
-        stroke::choose_brushes(entries, {}, 1, 0, fit, widths);
+        stroke::choose_brushes(entries, {}, fit, widths);
     }
     stroke::redip_long_lines(entries, fit, widths);
     stroke::press_to_widths(entries, widths);

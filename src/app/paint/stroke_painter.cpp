@@ -108,8 +108,8 @@ std::function<double(const std::string&)> StrokePainter::film_of_inks() const {
 std::vector<stroke::JournalEntry> StrokePainter::entries_of(PaintDrawing& command) {
     PlacedWriting& drawing = command.drawing;
     drawing.fit.film = film_of_inks();
-    stroke::choose_brushes(drawing.entries, stroke::drawing_in(drawing.entries, true), drawing.scale, drawing.extent,
-                           drawing.fit, widths_);
+    const std::vector<stroke::StrokeSamples*> traces = stroke::drawing_in(drawing.entries, true);
+    stroke::choose_brushes(drawing.entries, {traces, drawing.scale, drawing.extent}, drawing.fit, widths_);
     stroke::redip_long_lines(drawing.entries, drawing.fit, widths_);
     stroke::press_to_widths(drawing.entries, widths_);
     return std::move(drawing.entries);

@@ -154,7 +154,7 @@ std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& s
     const std::vector<stroke::StrokeSamples*> drawing = stroke::drawing_in(strokes, all);
     const std::vector<stroke::FlatArea*> areas = stroke::areas_in(strokes, all);
     if (drawing.empty() && areas.empty()) {
-        stroke::choose_brushes(strokes, {}, 1, 0, fit, widths);
+        stroke::choose_brushes(strokes, {}, fit, widths);
         return {};
     }
     stroke::arrange_parts(drawing);
@@ -183,7 +183,7 @@ std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& s
                                      Vec2(area.centre()), scale, a.place.mirror};
     stroke::place_drawing(drawing, place);
     stroke::place_areas(areas, place);
-    stroke::choose_brushes(strokes, drawing, scale, scale * std::max(area.size().x, area.size().y), fit, widths);
+    stroke::choose_brushes(strokes, {drawing, scale, scale * std::max(area.size().x, area.size().y)}, fit, widths);
     return placed;
 }
 

@@ -177,20 +177,20 @@ void place_drawing(std::span<StrokeSamples* const> drawing, const DrawingPlace& 
 
 namespace {
 
-/// The brush that a stroke is painted with, in the size that fits it. `placed`: it is part of a drawing that has been
-/// placed with `scale` and is `extent` metres large now.
-std::string sized_brush(const PaintStroke& s, bool placed, double scale, double extent, const BrushFit& fit,
-                        WidthTables& widths, Films& films) {
+/// The brush that a stroke is painted with, in the size that fits it. `placed`: the drawing that it is part of; or
+/// null.
+std::string sized_brush(const PaintStroke& s, const PlacedDrawing* placed, const BrushFit& fit, WidthTables& widths,
+                        Films& films) {
     std::string sized = s.brush;
     if (sized.empty() && !fit.otherwise.empty())
         sized = fit.otherwise;
     else if (sized.empty() && placed)
-        sized = brush::name_of({kDefaultBrush, std::min(1.0, extent / kWriting)});
+        sized = brush::name_of({kDefaultBrush, std::min(1.0, placed->extent / kWriting)});
     else if (sized.empty())
         sized = kDefaultBrush;
     else if (fit.grow && placed) {
         const brush::SizedName name = brush::sized_name(sized);
-        sized = brush::name_of({name.base, name.factor * scale});
+        sized = brush::name_of({name.base, name.factor * placed->scale});
     }
     if (!fit.fit || !has_width(s)) return sized;
     // The line says how large the brush is, not the size that the brush was in.
@@ -238,17 +238,17 @@ void fill_wide_lines(std::vector<JournalEntry>& entries, double wide, AreaEdges 
     for (const auto& [area, k] : areas) area->low = drawings[k].low, area->high = drawings[k].high;
 }
 
-void choose_brushes(std::vector<JournalEntry>& entries, std::span<StrokeSamples* const> drawing, double scale,
-                    double extent, const BrushFit& fit, WidthTables& widths) {
+void choose_brushes(std::vector<JournalEntry>& entries, const PlacedDrawing& drawing, const BrushFit& fit,
+                    WidthTables& widths) {
     // What is done with a brush before a stroke is done with the brush of that stroke.
-    const std::unordered_set<const StrokeSamples*> among(drawing.begin(), drawing.end());
+    const std::unordered_set<const StrokeSamples*> among(drawing.traces.begin(), drawing.traces.end());
     Films films(fit);
     std::string own, sized;
     for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry) {
         PaintStroke* s = entry->as<PaintStroke>();
         if (s && s->layer != kPaletteLayer) {
             own = s->brush;
-            s->brush = sized = sized_brush(*s, among.contains(&s->trace), scale, extent, fit, widths, films);
+            s->brush = sized = sized_brush(*s, among.contains(&s->trace) ? &drawing : nullptr, fit, widths, films);
         } else if (brush_of(*entry) == own) {
             set_brush(*entry, sized);
         }

@@ -100,10 +100,16 @@ void place_drawing(std::span<StrokeSamples* const> drawing, const DrawingPlace& 
 /// Invalidates pointers to traces.
 void redip_long_lines(std::vector<JournalEntry>& entries, const BrushFit& fit, WidthTables& widths);
 
-/// Sets the brush of every entry without one, and sizes of brushes as `fit` says. `drawing` holds traces of `entries`,
-/// placed with `scale`; it is `extent` metres large.
-void choose_brushes(std::vector<JournalEntry>& entries, std::span<StrokeSamples* const> drawing, double scale,
-                    double extent, const BrushFit& fit, WidthTables& widths);
+/// Traces of a drawing that has been placed.
+struct PlacedDrawing {
+    std::span<StrokeSamples* const> traces = {};
+    double scale = 1;   ///< times the size in the file
+    double extent = 0;  ///< metres, as placed
+};
+
+/// Sets the brush of every entry without one, and sizes of brushes as `fit` says. `drawing`: traces of `entries`.
+void choose_brushes(std::vector<JournalEntry>& entries, const PlacedDrawing& drawing, const BrushFit& fit,
+                    WidthTables& widths);
 
 /// A place farther beside the model than this part of its box diagonal is a mistake, not a rounding of its numbers.
 inline constexpr double kFarBeside = 0.05;
