@@ -126,13 +126,13 @@ TEST(Fit, AFlatStrokeOnTheSameModelOrAnotherMeshOfItFits) {
         const StrokeFit same = fit_on(*sheet({}, kSmall).mesh, written(mapping), true),
                         finer = fit_on(remeshed(*sheet({}, kSmall).mesh), written(mapping), true);
         EXPECT_TRUE(mismatch_reason(same).empty());
-        EXPECT_EQ(same.moved_most, 0);
+        EXPECT_EQ(same.moved.most, 0);
         EXPECT_EQ(same.missing(), 0);
-        EXPECT_EQ(same.stretched, 0);
+        EXPECT_EQ(same.common.stretched, 0);
         EXPECT_NEAR(same.length, 0.03, 1e-3);
-        EXPECT_FALSE(same.slid);
+        EXPECT_FALSE(same.moved.on_model);
         EXPECT_TRUE(mismatch_reason(finer).empty()) << static_cast<int>(mapping);
-        EXPECT_FALSE(finer.slid);
+        EXPECT_FALSE(finer.moved.on_model);
     }
 }
 
@@ -145,9 +145,9 @@ TEST(Fit, AFlatStrokeReportsHowFarItsPlacementMoved) {
         // model.
         const Model aside = sheet(make_frame({0, 20e-3, 0}, {0, 0, 1}), kSmall);
         const StrokeFit fit = fit_on(*aside.mesh, written(mapping), true);
-        EXPECT_LT(fit.moved, 1e-6);
-        ASSERT_TRUE(fit.slid);
-        EXPECT_NEAR(*fit.slid, 20e-3, 1e-6);
+        EXPECT_LT(fit.moved.median, 1e-6);
+        ASSERT_TRUE(fit.moved.on_model);
+        EXPECT_NEAR(*fit.moved.on_model, 20e-3, 1e-6);
         EXPECT_EQ(mismatch_reason(fit).text(), "lies 20.0 mm from its place on the model");
     }
 }
@@ -168,7 +168,7 @@ TEST(Fit, AnAreaOfADrawingIsComparedAlongItsEdge) {
         EXPECT_TRUE(same.area);
         EXPECT_TRUE(mismatch_reason(same).empty()) << mismatch_reason(same).text();
         EXPECT_NEAR(same.length, 0.08, 1e-6);
-        EXPECT_EQ(same.moved_most, 0);
+        EXPECT_EQ(same.moved.most, 0);
         EXPECT_EQ(same.missing(), 0);
         EXPECT_TRUE(mismatch_reason(fit_on(remeshed(*sheet({}, kSmall).mesh), square(mapping))).empty());
         const StrokeFit lower = fit_on(*sheet(make_frame({0, 0, -20e-3}, {0, 0, 1}), kSmall).mesh, square(mapping));
@@ -192,7 +192,7 @@ TEST(Fit, AnAreaOfADrawingIsComparedAlongItsEdge) {
                                 .at(0);
     EXPECT_TRUE(grown.followed);
     EXPECT_TRUE(mismatch_reason(grown).empty()) << mismatch_reason(grown).text();
-    EXPECT_LT(grown.slid.value_or(1), 1e-6);
+    EXPECT_LT(grown.moved.on_model.value_or(1), 1e-6);
     // A hole of 12 mm about the middle of an edge of 20 mm; triangles of 3 mm make it ragged.
     const StrokeFit hole =
         fit_on(with_hole(*sheet({}, kSmall).mesh, Vec3(0.01, 0, 0), 6e-3), square(SurfaceMapping::project));
@@ -214,8 +214,8 @@ TEST(Fit, AHoleUnderAStrokeIsMissingInk) {
 TEST(Fit, AStretchedStrokeIsReportedByItsFraction) {
     const Model steep = sheet(make_frame(Vec3(0), glm::normalize(Vec3(-std::sqrt(3.0), 0, 1))), kSmall);
     const StrokeFit fit = fit_on(*steep.mesh, written(SurfaceMapping::project));
-    EXPECT_NEAR(fit.kept_now / fit.kept, 2, 0.02);
-    EXPECT_GT(fit.stretched, 0.5 * fit.length);
+    EXPECT_NEAR(fit.common.revised / fit.common.former, 2, 0.02);
+    EXPECT_GT(fit.common.stretched, 0.5 * fit.length);
     EXPECT_NE(mismatch_reason(fit).text().find("stretched or squeezed"), std::string::npos)
         << mismatch_reason(fit).text();
 }
@@ -226,7 +226,7 @@ TEST(Fit, TheTotalIsThatOfAllStrokes) {
         fit_on(*sheet({}, kSmall).mesh, written(SurfaceMapping::wrap))};
     const FitTotal total = total_of(fits, {{1, "moved"}});
     EXPECT_EQ(total.strokes, 2u);
-    EXPECT_NEAR(total.moved_most, 20e-3, 1e-6);
+    EXPECT_NEAR(total.moved.most, 20e-3, 1e-6);
     EXPECT_EQ(describe(total).text(),
               "1 of 2 strokes no longer fit: they lie 20.0 mm from where they lay (20.0 mm at "
               "most), 0 % of their ink is missing, 0 % of it is "

@@ -122,14 +122,14 @@ void draw_legend(PictureOverlay& overlay, const render::Image& image) {
 nlohmann::json to_json(const stroke::StrokeFit& f) {
     nlohmann::json j{{"stroke", f.stroke},
                      {"path_mm", f.length / kMillimetre},
-                     {"moved_mm", f.moved / kMillimetre},
-                     {"moved_most_mm", f.moved_most / kMillimetre},
+                     {"moved_mm", f.moved.median / kMillimetre},
+                     {"moved_most_mm", f.moved.most / kMillimetre},
                      {"missing", f.missing()},
-                     {"stretched", f.length > 0 ? f.stretched / f.length : 0},
-                     {"length_factor", f.kept > 0 ? f.kept_now / f.kept : 1},
+                     {"stretched", f.length > 0 ? f.common.stretched / f.length : 0},
+                     {"length_factor", f.common.former > 0 ? f.common.revised / f.common.former : 1},
                      {"followed", f.followed}};
     if (f.area) j["area"] = true;
-    if (f.slid) j["moved_on_model_mm"] = *f.slid / kMillimetre;
+    if (f.moved.on_model) j["moved_on_model_mm"] = *f.moved.on_model / kMillimetre;
     if (!f.flat) j["deeper_mm"] = f.deeper / kMillimetre;
     return j;
 }
@@ -219,12 +219,12 @@ nlohmann::json to_json(const RevisedStrokes& strokes, const Fit& fit) {
     for (const stroke::StrokeFit& f : fit.fits) list.push_back(to_json(f));
     nlohmann::json j{{"strokes", std::move(list)},
                      {"mismatches", fit.total.mismatches},
-                     {"moved_mm", fit.total.moved / kMillimetre},
-                     {"moved_most_mm", fit.total.moved_most / kMillimetre},
+                     {"moved_mm", fit.total.moved.median / kMillimetre},
+                     {"moved_most_mm", fit.total.moved.most / kMillimetre},
                      {"missing", fit.total.missing},
                      {"stretched", fit.total.stretched}};
     j["misfits"] = j["mismatches"];  // its name before
-    if (fit.total.slid) j["moved_on_model_mm"] = *fit.total.slid / kMillimetre;
+    if (fit.total.moved.on_model) j["moved_on_model_mm"] = *fit.total.moved.on_model / kMillimetre;
     if (strokes.change.whole) j["model"] = to_json(*strokes.change.whole);
     for (const stroke::PartMotion& part : strokes.change.parts) {
         parts.push_back(to_json(part.motion));

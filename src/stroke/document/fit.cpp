@@ -66,9 +66,9 @@ void add_places(StrokeFit& fit, const std::vector<Place>& places, const std::opt
     double piece = 0, now = 0;
     const double scale = motion ? motion->scale : 1;
     const auto end_piece = [&] {
-        fit.kept += piece;
-        fit.kept_now += now;
-        if (now > kStretch * piece || kStretch * now < piece) fit.stretched += piece;
+        fit.common.former += piece;
+        fit.common.revised += now;
+        if (now > kStretch * piece || kStretch * now < piece) fit.common.stretched += piece;
         piece = now = 0;
     };
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -92,10 +92,10 @@ void add_places(StrokeFit& fit, const std::vector<Place>& places, const std::opt
     }
     // What is left over is short: it says nothing of its own, but for a stroke that is all as
     // short.
-    if (fit.kept == 0 && piece > kTouch) end_piece();
-    if (!moved.empty()) fit.moved_most = *std::ranges::max_element(moved);
-    fit.moved = median(std::move(moved));
-    if (!slid.empty()) fit.slid = median(std::move(slid));
+    if (fit.common.former == 0 && piece > kTouch) end_piece();
+    if (!moved.empty()) fit.moved.most = *std::ranges::max_element(moved);
+    fit.moved.median = median(std::move(moved));
+    if (!slid.empty()) fit.moved.on_model = median(std::move(slid));
 }
 
 /// One stroke on both models.
@@ -340,10 +340,10 @@ Message mismatch_reason(const StrokeFit& fit) {
     const double far = std::max(kLeastMove, kMovePart * fit.length);
     std::vector<Message> reasons;
     // A place in space is the hand's: it moves along the hair only, which the depth shows.
-    if (fit.flat && !fit.followed && fit.moved > far)
-        reasons.push_back(Message("lies {} mm from where it lay", tenths(1e3 * fit.moved)));
-    if (fit.slid && *fit.slid > far)
-        reasons.push_back(Message("lies {} mm from its place on the model", tenths(1e3 * *fit.slid)));
+    if (fit.flat && !fit.followed && fit.moved.median > far)
+        reasons.push_back(Message("lies {} mm from where it lay", tenths(1e3 * fit.moved.median)));
+    if (fit.moved.on_model && *fit.moved.on_model > far)
+        reasons.push_back(Message("lies {} mm from its place on the model", tenths(1e3 * *fit.moved.on_model)));
     const bool sank = std::abs(fit.deeper) > std::max(kLeastChange, kDepthPart * fit.depth);
     // A surface that sank loses the light ends of a stroke too: that it sank says more.
     const double least = (sank ? kMost : kPart) * fit.length;
@@ -354,9 +354,9 @@ Message mismatch_reason(const StrokeFit& fit) {
     else if (sank)
         reasons.push_back(Message(fit.deeper > 0 ? "pressed {} mm deeper" : "pressed {} mm less deep",
                                   tenths(1e3 * std::abs(fit.deeper))));
-    if (fit.stretched > kPart * fit.length)
+    if (fit.common.stretched > kPart * fit.length)
         reasons.push_back(
-            Message("{} % of it is stretched or squeezed by more than a quarter", percent(fit.stretched)));
+            Message("{} % of it is stretched or squeezed by more than a quarter", percent(fit.common.stretched)));
     return join(reasons);
 }
 
@@ -388,22 +388,23 @@ FitTotal total_of(const std::vector<StrokeFit>& fits, const std::vector<StrokeMi
     for (const StrokeFit& fit : fits) {
         total.areas |= fit.area;
         if (!(fit.length > 0)) continue;
-        moved.push_back(fit.moved);
-        if (fit.slid) slid.push_back(*fit.slid);
-        total.moved_most = std::max(total.moved_most, fit.moved_most);
+        moved.push_back(fit.moved.median);
+        if (fit.moved.on_model) slid.push_back(*fit.moved.on_model);
+        total.moved.most = std::max(total.moved.most, fit.moved.most);
         length += fit.length;
         missing += fit.lost + fit.buried;
-        stretched += fit.stretched;
+        stretched += fit.common.stretched;
     }
-    total.moved = median(std::move(moved));
-    if (!slid.empty()) total.slid = median(std::move(slid));
+    total.moved.median = median(std::move(moved));
+    if (!slid.empty()) total.moved.on_model = median(std::move(slid));
     if (length > 0) total.missing = missing / length, total.stretched = stretched / length;
     return total;
 }
 
 Message describe(const FitTotal& t) {
-    const Message on_model =
-        t.slid ? Message(" and {} mm from their places on the model", tenths(1e3 * *t.slid)) : Message();
+    const Message on_model = t.moved.on_model
+                                 ? Message(" and {} mm from their places on the model", tenths(1e3 * *t.moved.on_model))
+                                 : Message();
     return Message(
         t.areas
             ? "{} of {} strokes and areas no longer fit: they lie {} mm from where they lay ({} mm at most){}, {} % of "
@@ -411,7 +412,7 @@ Message describe(const FitTotal& t) {
             : "{} of {} strokes no longer fit: they lie {} mm from where they lay ({} mm at most){}, {} % of their ink "
               "is "
               "missing, {} % of it is stretched or squeezed by more than a quarter",
-        t.mismatches, t.strokes, tenths(1e3 * t.moved), tenths(1e3 * t.moved_most), on_model,
+        t.mismatches, t.strokes, tenths(1e3 * t.moved.median), tenths(1e3 * t.moved.most), on_model,
         std::lround(100 * t.missing), std::lround(100 * t.stretched));
 }
 

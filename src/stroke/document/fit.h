@@ -16,27 +16,34 @@
 /// --model` and when the studio opens a project on a revised model.
 namespace tuft::stroke {
 
+/// How far the ink of a stroke lies from its former place. Metres.
+struct InkDisplacement {
+    double median = 0, most = 0;
+    std::optional<double> on_model;  ///< median, from its former point moved by the model's motion; none: no motion
+};
+
+/// Part of a path where both models have ink. Metres, along the path.
+struct CommonPath {
+    double former = 0, revised = 0;  ///< its length on each model
+    double stretched = 0;            ///< of `former`, where 5 mm became more than a quarter longer or shorter
+};
+
 /// How a stroke, or an area of a drawing, made on a former model lies on a revised one. Lengths in metres; path lengths
 /// are those of the ink's path on the former model, of an area along its rings. The ink of a sample is where a flat
 /// trace is mapped to, and where the axis of a holder in space meets the surface.
 struct StrokeFit {
-    std::uint64_t stroke = 0;    ///< id of its entry
-    bool area = false;           ///< of a drawing
-    bool reached = false;        ///< the former model was within a tuft's length of the ferrule's mouth somewhere
-    double length = 0;           ///< length of the path
-    double lost = 0;             ///< of it, where the revised model has no surface for the ink
-    double buried = 0;           ///< of it, where the revised surface lies above the ferrule's mouth
-    double depth = 0;            ///< in space: median depth of the unbent tip in the former model, of the rest
-    double deeper = 0;           ///< in space: median increase of that depth
-    bool flat = false;           ///< a flat stroke, mapped anew onto the revised model
-    bool followed = false;       ///< the entry on the revised model is not that on the former one
-    double moved = 0;            ///< median displacement of the ink
-    double moved_most = 0;       ///< largest displacement of the ink
-    std::optional<double> slid;  ///< median distance of the ink from its former point moved by the model's motion;
-                                 ///< empty without a motion
-    double kept = 0;             ///< of the path, where both models have ink
-    double kept_now = 0;         ///< length of the same part on the revised model
-    double stretched = 0;        ///< of `kept`, where 5 mm became more than a quarter longer or shorter
+    std::uint64_t stroke = 0;  ///< id of its entry
+    bool area = false;         ///< of a drawing
+    bool reached = false;      ///< the former model was within a tuft's length of the ferrule's mouth somewhere
+    double length = 0;         ///< length of the path
+    double lost = 0;           ///< of it, where the revised model has no surface for the ink
+    double buried = 0;         ///< of it, where the revised surface lies above the ferrule's mouth
+    double depth = 0;          ///< in space: median depth of the unbent tip in the former model, of the rest
+    double deeper = 0;         ///< in space: median increase of that depth
+    bool flat = false;         ///< a flat stroke, mapped anew onto the revised model
+    bool followed = false;     ///< the entry on the revised model is not that on the former one
+    InkDisplacement moved;
+    CommonPath common;
 
     /// Part of the path without ink, 0–1.
     double missing() const { return length > 0 ? (lost + buried) / length : 0; }
@@ -108,8 +115,7 @@ std::vector<StrokeMismatch> find_mismatches(const std::vector<StrokeReport>& rep
 struct FitTotal {
     std::size_t strokes = 0, mismatches = 0;  ///< both with the areas
     bool areas = false;                       ///< there are some
-    double moved = 0, moved_most = 0;         ///< median over the strokes, and largest; metres
-    std::optional<double> slid;               ///< median over the strokes, metres
+    InkDisplacement moved;                    ///< medians over the strokes, and largest
     double missing = 0, stretched = 0;        ///< parts of the path of all strokes, 0–1
 };
 FitTotal total_of(const std::vector<StrokeFit>& fits, const std::vector<StrokeMismatch>& mismatches);
