@@ -62,9 +62,7 @@ PointerInput::PointerInput(const mesh::SurfaceQuery& surface, const brush::Prese
                            const PointerSettings& settings, BrushTipLag lag)
     : surface_(surface),
       holder_(holder_options(preset, surface.mesh())),
-      settings_(settings),
-      by_motion_(pressure_options(settings)),
-      filter_(position_filter(settings)),
+      options_{settings, pressure_options(settings), position_filter(settings)},
       view_(surface, std::min({2 * preset.radius, kMostFelt, kFeltOfModel * surface.mesh().bounds.diagonal()}),
             holder_.steady),
       wide_(brush::can_be_turned(preset)) {
@@ -87,18 +85,19 @@ Vec3 PointerInput::onto_surface() {
     const Vec3 offset = on->position - point_.position;
     const bool sideways =
         glm::length(offset - glm::dot(offset, point_.normal) * point_.normal) > 0.5 * glm::length(offset);
-    if (motion_.bridged >= 0 && motion_.time - motion_.bridged < 5 * settings_.smoothing + 2 * kFrame && sideways)
+    if (motion_.bridged >= 0 && motion_.time - motion_.bridged < 5 * options_.pointer.smoothing + 2 * kFrame &&
+        sideways)
         return Vec3(0);
     const double side = glm::dot(on->normal, point_.normal) < 0 ? -1 : 1;
     point_.position = on->position;
-    if (settings_.string > 0) point_.normal = side * on->normal;
+    if (options_.pointer.string > 0) point_.normal = side * on->normal;
     return offset;
 }
 
 brush::Pose PointerInput::pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure,
                                   double time) const {
     const Vec2 leant = lean_of_make(aim, normal);
-    const Vec2 tilt = glm::clamp(aim.tilt.value_or(settings_.tilt) + leant, -kMaxTilt, kMaxTilt);
+    const Vec2 tilt = glm::clamp(aim.tilt.value_or(options_.pointer.tilt) + leant, -kMaxTilt, kMaxTilt);
     const auto along = [&](const Vec3& v) {
         const Vec3 d = v - glm::dot(v, normal) * normal;
         return glm::length(d) > 1e-6 ? glm::normalize(d) : Vec3(0);
@@ -108,7 +107,7 @@ brush::Pose PointerInput::pose_at(const Aim& aim, const Vec3& point, const Vec3&
     };
     const Vec3 up =
         glm::normalize(normal + std::tan(tilt.x) * along(aim.view_right) + std::tan(tilt.y) * along(aim.view_up) +
-                       tipped_after(motion_.gone) * dragged_.string +
+                       tipped_after(motion_.gone) * strings_.dragged.string +
                        turns_.back.turned_back() * tipped_after(turns_.back.since_turn()) * trails(aim).string);
     const double down = pressed(aim, pressure), carried = turns_.back.lift().carried(glm::length(trails(aim).string));
     const double height =
@@ -118,12 +117,12 @@ brush::Pose PointerInput::pose_at(const Aim& aim, const Vec3& point, const Vec3&
             .time = time};
 }
 
-// As `settings_.tilt`: where neither the pen nor the settings lean the holder.
+// As the tilt of the settings: where neither the pen nor the settings lean the holder.
 Vec2 PointerInput::lean_of_make(const Aim& aim, const Vec3& normal) const {
-    if (!(holder_.lean > 0) || aim.tilt || settings_.tilt != Vec2(0)) return Vec2(0);
+    if (!(holder_.lean > 0) || aim.tilt || options_.pointer.tilt != Vec2(0)) return Vec2(0);
     const Axes axes = axes_across(normal, aim.view_right, -aim.view_up);
     const Vec3& string = trails(aim).string;
-    const Vec3 to = glm::mix(leant_.string, string, turns_.back.lift().leans_over(glm::length(string)));
+    const Vec3 to = glm::mix(strings_.leant.string, string, turns_.back.lift().leans_over(glm::length(string)));
     const Vec2 ahead{glm::dot(to, axes.right), glm::dot(to, axes.down)};
     const Vec2 lean = stroke::lean_of_make(holder_, roll_at(aim), ahead);
     return {lean.x, -lean.y};
@@ -142,7 +141,8 @@ Vec3 PointerInput::across(const Aim& aim) const {
 }
 
 double PointerInput::roll_at(const Aim& aim) const {
-    return settings_.roll + (settings_.roll_follow && turns_.follower.started ? turns_.follower.roll : -aim.turn);
+    return options_.pointer.roll +
+           (options_.pointer.roll_follow && turns_.follower.started ? turns_.follower.roll : -aim.turn);
 }
 
 double PointerInput::roll_of_ferrule(const Aim& aim) const {
@@ -166,13 +166,13 @@ Quat PointerInput::rotation_at(const Aim& aim, const Vec3& normal, const Vec3& u
 void PointerInput::turn_holder(const Aim& aim, const Vec3& motion) {
     if (!wide_) return;
     const Axes axes = axes_across(point_.normal, aim.view_right, -aim.view_up);
-    if (settings_.roll_follow)
+    if (options_.pointer.roll_follow)
         follow_stroke(turns_.follower, -aim.turn, {glm::dot(motion, axes.right), glm::dot(motion, axes.down)});
     if (holder_.blade_landing > 0 && is_clean(aim)) {
         if (!turns_.blade) turns_.blade.emplace(holder_.tip_lag_turn, roll_at(aim));
         turns_.blade->follow(roll_at(aim), glm::length(motion));
     }
-    const Vec2 ahead{glm::dot(dragged_.string, axes.right), glm::dot(dragged_.string, axes.down)};
+    const Vec2 ahead{glm::dot(strings_.dragged.string, axes.right), glm::dot(strings_.dragged.string, axes.down)};
     if (!holder_.turned || glm::length(ahead) < 1e-9) return;
     const double turn = roll_at(aim) - std::atan2(-ahead.y, ahead.x);
     if (!turns_.followed) turns_.followed.emplace(holder_.tuft_length, turn);
@@ -181,27 +181,27 @@ void PointerInput::turn_holder(const Aim& aim, const Vec3& motion) {
 
 // Where the holder is for ink at the point: ahead along the string, and under a lean aside.
 Vec3 PointerInput::ahead_of(const Aim& aim, const Vec3& normal, double pressure) const {
-    const double taut = glm::length(dragged_.string);
+    const double taut = glm::length(strings_.dragged.string);
     if (holder_.tip_lag.empty() || !(pressure > 0) || taut < 1e-9) return Vec3(0);
     const Axes axes = axes_across(normal, aim.view_right, -aim.view_up);
-    const Vec2 ahead{glm::dot(dragged_.string, axes.right), glm::dot(dragged_.string, axes.down)};
+    const Vec2 ahead{glm::dot(strings_.dragged.string, axes.right), glm::dot(strings_.dragged.string, axes.down)};
     if (glm::length(ahead) < 1e-9) return Vec3(0);
-    const Vec2 tilt = settings_.tilt + lean_of_make(aim, normal);
+    const Vec2 tilt = options_.pointer.tilt + lean_of_make(aim, normal);
     const double roll =
         turns_.followed ? turns_.followed->turn() + std::atan2(-ahead.y, ahead.x) : roll_of_ferrule(aim);
     const Vec2 lag = std::lerp(taut, 1.0, turns_.back.lift().back) *
                      tip_lag_at(holder_, pressure, {tilt.x, -tilt.y}, roll, glm::normalize(ahead));
     const double spread =
         pressure * motion_.spread * (1 - smooth_step(motion_.gone / (kSpreadGone * holder_.tuft_length)));
-    return lag.x * axes.right + lag.y * axes.down + spread * dragged_.string;
+    return lag.x * axes.right + lag.y * axes.down + spread * strings_.dragged.string;
 }
 
 // A pen that presses more trails by more: its string grows as taut as it is.
 void PointerInput::grow_string() {
     if (!is_lifted_at_turns(holder_)) return;
     const double reach = std::max(holder_.tip_lag_turn, half_lag(holder_, steadying_.press.pressure));
-    trailing_.position -= (reach - trailing_reach_) * trailing_.string;
-    trailing_reach_ = reach;
+    strings_.trailing.position -= (reach - strings_.trailing_reach) * strings_.trailing.string;
+    strings_.trailing_reach = reach;
 }
 
 // The point has moved: what it drags follows on the strings, along the surface.
@@ -214,33 +214,33 @@ void PointerInput::drag(const Aim& aim) {
     };
     const double lean = lean_string(holder_);
     if (is_clean(aim))
-        follow(dragged_, holder_.tip_lag_turn);
+        follow(strings_.dragged, holder_.tip_lag_turn);
     else if (is_lifted_at_turns(holder_))
-        follow(trailing_, trailing_reach_);
-    follow(leant_, lean);
+        follow(strings_.trailing, strings_.trailing_reach);
+    follow(strings_.leant, lean);
     if (!is_lifted_at_turns(holder_)) return;
     const DraggedPoint& dragged = trails(aim);
     if (is_clean(aim))
         turns_.back.follow(point_.position, dragged.string, holder_.tip_lag_turn, kLiftedTurns);
     else
-        turns_.back.follow(point_.position, dragged.string, trailing_reach_, kLiftedPenTurns);
+        turns_.back.follow(point_.position, dragged.string, strings_.trailing_reach, kLiftedPenTurns);
     // Hair that is lifted is set down leaning to its other side.
     const TurnLift& lift = turns_.back.lift();
     if (lift.back >= 1 && glm::length(dragged.string) < lift.air)
-        leant_ = {point_.position - lean * dragged.string, dragged.string};
+        strings_.leant = {point_.position - lean * dragged.string, dragged.string};
 }
 
 double PointerInput::goal_pressure(const Aim& aim) const {
     const double travel = kLightly + motion_.gone / (kOverAnEdge * holder_.tuft_length);
     const double landed = side_.over_edge ? smooth_step(travel / (1 + kLightly)) : 1;
-    return landed *
-           (aim.pressure >= 0 ? pen_depth(settings_, aim.pressure) : pressure_goal(steadying_.press, by_motion_));
+    return landed * (aim.pressure >= 0 ? pen_depth(options_.pointer, aim.pressure)
+                                       : pressure_goal(steadying_.press, options_.by_motion));
 }
 
 void PointerInput::settle_pressure(const Aim& aim, double travel, double dt) {
     PressureState& press = steadying_.press;
-    track_motion(press, travel, dt, by_motion_);
-    const double follow = aim.pressure >= 0 ? kPenRise : by_motion_.follow;
+    track_motion(press, travel, dt, options_.by_motion);
+    const double follow = aim.pressure >= 0 ? kPenRise : options_.by_motion.follow;
     press.pressure += settled_part(dt, follow) * (goal_pressure(aim) - press.pressure);
 }
 
@@ -252,20 +252,20 @@ void PointerInput::pen_down(const Aim& aim, const AimedSurface& hit, const Vec3&
     motion_ = {.start = aim.time};
     steadying_ = {};
     steadying_.position = {.started = true, .raw = hit.position, .value = hit.position};
-    if (settings_.string > 0) {
+    if (options_.pointer.string > 0) {
         Aim at = aim;
         pull_on_string(at, hit.position);
     }
     turns_.follower = {};
     turns_.followed.reset();
     turns_.blade.reset();
-    dragged_ = {point_.position - holder_.tip_lag_turn * towards, towards};
-    trailing_ = {point_.position, Vec3(0)};
-    trailing_reach_ = holder_.tip_lag_turn;
+    strings_.dragged = {point_.position - holder_.tip_lag_turn * towards, towards};
+    strings_.trailing = {point_.position, Vec3(0)};
+    strings_.trailing_reach = holder_.tip_lag_turn;
     turns_.back = {};
     turn_holder(aim, Vec3(0));
     const Vec3 leans = towards != Vec3(0) ? towards : across(aim);
-    leant_ = {point_.position - lean_string(holder_) * leans, leans};
+    strings_.leant = {point_.position - lean_string(holder_) * leans, leans};
     steps.push_back({StrokeStep::Kind::begin, {}});
     steps.push_back({StrokeStep::Kind::poses, {pose_at(aim, point_.position, point_.normal, 0, 0)}});
 }
@@ -318,7 +318,7 @@ void PointerInput::set_down(std::vector<StrokeStep>& steps) {
     press.speed = length / std::max(kFrame, last.aim.time - first.aim.time);
     if (!side_.over_edge)
         motion_.spread = kSpread * holder_.tuft_length * (1 - std::min(1.0, press.speed / kFastStart));
-    const double pressure = (glm::length(dragged_.string) > 0 ? kPressedDown : 1.0) * goal_pressure(first.aim);
+    const double pressure = (glm::length(strings_.dragged.string) > 0 ? kPressedDown : 1.0) * goal_pressure(first.aim);
     const int n = static_cast<int>(std::ceil(kSetDown / kFrame));
     StrokeStep step;
     for (int i = 1; i <= n; ++i) {
@@ -329,7 +329,7 @@ void PointerInput::set_down(std::vector<StrokeStep>& steps) {
     steadying_.position.time = motion_.time;
     for (std::size_t i = 1; i < waiting.size(); ++i) {
         if (waiting[i].surface.bridged) motion_.bridged = motion_.time;
-        const Vec3 normal = normal_at_start(waiting[i].aim, waiting[i].surface, dragged_.string);
+        const Vec3 normal = normal_at_start(waiting[i].aim, waiting[i].surface, strings_.dragged.string);
         follow(waiting[i].aim, waiting[i].surface.position, normal, step.poses);
         goal_.normal = waiting[i].surface.normal;
     }
@@ -341,10 +341,12 @@ void PointerInput::set_down(std::vector<StrokeStep>& steps) {
 Vec3 PointerInput::pull_on_string(Aim& aim, const Vec3& hand) {
     const Vec3 before = steadying_.string.tip;
     const bool began = steadying_.string.started;
-    const StrokeSample tip =
-        pull(steadying_.string,
-             {.position = hand, .pressure = aim.pressure, .tilt = aim.tilt.value_or(settings_.tilt), .roll = aim.turn},
-             settings_.string);
+    const StrokeSample tip = pull(steadying_.string,
+                                  {.position = hand,
+                                   .pressure = aim.pressure,
+                                   .tilt = aim.tilt.value_or(options_.pointer.tilt),
+                                   .roll = aim.turn},
+                                  options_.pointer.string);
     if (began && tip.position == before) {
         aim.pressure = std::max(aim.pressure, tip.pressure);
         return tip.position;
@@ -362,7 +364,7 @@ void PointerInput::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, 
     for (int i = 0; i < steps; ++i) {
         Aim at = aim;
         Vec3 target = from + static_cast<double>(i + 1) / steps * (goal - from);
-        if (settings_.string > 0) target = pull_on_string(at, target);
+        if (options_.pointer.string > 0) target = pull_on_string(at, target);
         step(at, target, normal, span / steps, poses);
     }
     goal_.position = goal;
@@ -371,9 +373,9 @@ void PointerInput::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, 
 void PointerInput::step(const Aim& aim, const Vec3& target, const Vec3& normal, double dt,
                         std::vector<brush::Pose>& poses) {
     const Vec3 before = point_.position;
-    point_.position = filter(steadying_.position, target, motion_.time + dt, filter_);
-    const bool leans_ahead = glm::dot(normal - point_.normal, dragged_.string) > 0;
-    const double constant = std::max(0.01, settings_.smoothing) * (leans_ahead ? 1 - at_start() : 1);
+    point_.position = filter(steadying_.position, target, motion_.time + dt, options_.filter);
+    const bool leans_ahead = glm::dot(normal - point_.normal, strings_.dragged.string) > 0;
+    const double constant = std::max(0.01, options_.pointer.smoothing) * (leans_ahead ? 1 - at_start() : 1);
     point_.normal = glm::normalize(point_.normal + settled_part(dt, constant) * (normal - point_.normal));
     // The string's end lies on the surface too.
     steadying_.string.tip += onto_surface();
@@ -401,7 +403,7 @@ int PointerInput::parts_of(const Aim& aim, const Vec3& motion) const {
     const Vec3& string = trails(aim).string;
     const bool slack = glm::dot(string, motion) < 0 || glm::length(string) < 1 - 1e-9;
     if (!is_lifted_at_turns(holder_) || !slack || string == Vec3(0)) return 1;
-    const double reach = is_clean(aim) ? holder_.tip_lag_turn : trailing_reach_;
+    const double reach = is_clean(aim) ? holder_.tip_lag_turn : strings_.trailing_reach;
     return static_cast<int>(std::clamp(std::ceil(kPartsOfString * glm::length(motion) / reach), 1.0, kMostParts));
 }
 
@@ -450,7 +452,7 @@ std::vector<StrokeStep> PointerInput::move(const Aim& aim) {
             follow(still, goal_.position, goal_.normal, step.poses);
         }
         if (hit->bridged) motion_.bridged = motion_.time;
-        if (is_clean(aim)) hit->normal = normal_at_start(aim, *hit, dragged_.string);
+        if (is_clean(aim)) hit->normal = normal_at_start(aim, *hit, strings_.dragged.string);
         follow(aim, hit->position, hit->normal, step.poses);
         steps.push_back(std::move(step));
     }
@@ -493,7 +495,7 @@ std::vector<StrokeStep> PointerInput::lift() {
     StrokeStep step;
     if (is_clean(aim_))
         arrive(step.poses);
-    else if (settings_.string > 0)
+    else if (options_.pointer.string > 0)
         catch_up(step.poses);
     const double start = steadying_.press.pressure;
     for (int i = 1; i <= count; ++i) {

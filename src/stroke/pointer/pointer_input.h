@@ -88,6 +88,17 @@ class PointerInput {
         double spread = 0;           ///< metres, additional lag of the tip at the start, at pressure 1
         double bridged = -1;         ///< `time` when the goal was last over a gap; negative: never
     };
+    struct Strings {
+        DraggedPoint dragged;       ///< on one of `tip_lag_turn`: where the tip lag points; of a clean stroke
+        DraggedPoint trailing;      ///< on one of half the tip lag, of a pen that is lifted where it turns back
+        double trailing_reach = 0;  ///< metres, length of that one
+        DraggedPoint leant;         ///< on one of `lean_string`: where the make leans
+    };
+    struct Options {
+        PointerSettings pointer;
+        PressureOptions by_motion;
+        OneEuroOptions filter;  ///< of the position
+    };
     /// What a hand's samples are steadied by (`gesture`).
     struct Steadying {
         String string;
@@ -109,12 +120,12 @@ class PointerInput {
         bool over_edge = false;       ///< the cursor crossed an edge of the outline since it was pressed
     };
 
-    bool is_clean(const Aim& aim) const { return settings_.clean_ends && aim.pressure < 0; }
+    bool is_clean(const Aim& aim) const { return options_.pointer.clean_ends && aim.pressure < 0; }
     brush::Pose pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure, double time) const;
     Quat rotation_at(const Aim& aim, const Vec3& normal, const Vec3& up) const;
     double roll_at(const Aim& aim) const;
     double roll_of_ferrule(const Aim& aim) const;
-    const DraggedPoint& trails(const Aim& aim) const { return is_clean(aim) ? dragged_ : trailing_; }
+    const DraggedPoint& trails(const Aim& aim) const { return is_clean(aim) ? strings_.dragged : strings_.trailing; }
     double pressed(const Aim& aim, double pressure) const;
     Vec3 across(const Aim& aim) const;
     Vec2 lean_of_make(const Aim& aim, const Vec3& normal) const;
@@ -139,19 +150,14 @@ class PointerInput {
 
     const mesh::SurfaceQuery& surface_;
     HolderOptions holder_;
-    PointerSettings settings_;
-    PressureOptions by_motion_;
-    OneEuroOptions filter_;
+    Options options_;
     LevelledView view_;
     bool wide_;  ///< the ferrule is wider than thick
     bool down_ = false;
     Side side_;
     Aim aim_;                       ///< the last one
     std::vector<Waiting> waiting_;  ///< of a clean stroke, until its direction is known
-    DraggedPoint dragged_;          ///< on a string of `tip_lag_turn`: where the tip lag points; of a clean stroke
-    DraggedPoint trailing_;         ///< on one of half the tip lag, of a pen that is lifted where it turns back
-    double trailing_reach_ = 0;     ///< metres, length of that string
-    DraggedPoint leant_;            ///< on one of `lean_string`: where the make leans
+    Strings strings_;
     Turns turns_;
     Place goal_, point_;  ///< of the cursor; of the smoothed or dragged point
     Motion motion_;
