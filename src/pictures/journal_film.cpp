@@ -90,6 +90,15 @@ class Camera {
     bool go_on() const { return !film_.progress || film_.progress("film", part_); }
 
   private:
+    /// The light that a series is drawn in.
+    struct Light {
+        PictureLook paint;                                    ///< that throws it back
+        std::vector<double> of_tile;                          ///< how far that is from what is seen, by tile
+        double difference = 0;                                ///< the sum of it
+        std::optional<render::PictureSeries::Length> series;  ///< that it is chosen for; or none yet
+        render::View from;                                    ///< first view of that series
+    };
+
     void compose_all() {
         const stroke::Appearance& appearance = painting_.appearance();
         shown_.colour = ink::compose_linear(appearance.stack(), model_.texels, appearance.substrate(),
@@ -111,7 +120,7 @@ class Camera {
         parts_ = painting_.parts().table();
         shown_ = make_look(model_, &painting_, "", false);
         compose_all();
-        lit_for_.reset();
+        light_.series.reset();
         return true;
     }
 
@@ -132,35 +141,35 @@ class Camera {
 
     /// Sums how far the paint on a tile is from that which the light is thrown back by.
     void note_difference(std::uint32_t tile) {
-        if (lit_.colour.texels.empty()) return;
+        if (light_.paint.colour.texels.empty()) return;
         const std::size_t size = shown_.colour.size, per_side = model_.texels.tiles_per_side;
         const std::size_t x0 = tile % per_side * atlas::kTile, y0 = tile / per_side * atlas::kTile;
         const std::size_t x1 = std::min(x0 + atlas::kTile, size), y1 = std::min(y0 + atlas::kTile, size);
         double sum = 0;
         for (std::size_t y = y0; y < y1; ++y)
             for (std::size_t i = 3 * (y * size + x0); i < 3 * (y * size + x1); ++i)
-                sum += double{std::abs(shown_.colour.texels[i] - lit_.colour.texels[i])};
-        difference_ += sum - std::exchange(of_tile_[tile], sum);
+                sum += double{std::abs(shown_.colour.texels[i] - light_.paint.colour.texels[i])};
+        light_.difference += sum - std::exchange(light_.of_tile[tile], sum);
     }
 
     /// Whether the light is that of paint too far from what is seen: a whole wash changes it, strokes do not.
     bool paint_is_far() const {
         constexpr double kMost = 0.02;  // mean reflectance, of the tiles of charts
         const double channels = 3.0 * atlas::kTileTexels * static_cast<double>(model_.texels.n_slots());
-        return surface_ != painting_.parts().surface() || difference_ > kMost * channels;
+        return surface_ != painting_.parts().surface() || light_.difference > kMost * channels;
     }
 
     /// Chooses the light of a series of one camera, or of one that moves: that of the paint that is seen, where the
     /// series is another (`anew`), or has none yet, or the paint is too far from its light.
     void choose_light(render::PictureSeries::Length length, bool anew) {
-        if (!anew && lit_for_ == length && !paint_is_far()) return;
+        if (!anew && light_.series == length && !paint_is_far()) return;
         series_.reset();
-        lit_for_ = length;
-        lit_from_ = options_.view;
-        lit_ = shown_;
-        lit_.point_to_maps(model_);
-        of_tile_.assign(model_.texels.slot_of_tile.size(), 0);
-        difference_ = 0;
+        light_.series = length;
+        light_.from = options_.view;
+        light_.paint = shown_;
+        light_.paint.point_to_maps(model_);
+        light_.of_tile.assign(model_.texels.slot_of_tile.size(), 0);
+        light_.difference = 0;
         surface_ = painting_.parts().surface();
     }
 
@@ -187,8 +196,8 @@ class Camera {
     /// samples and rays.
     render::PictureOptions series_options() const {
         render::PictureOptions options = options_;
-        options.view = lit_from_;
-        if (lit_for_ != render::PictureSeries::Length::moving) return options;
+        options.view = light_.from;
+        if (light_.series != render::PictureSeries::Length::moving) return options;
         options.edge_samples = 4;
         options.light_samples = 16;
         options.light_step = std::clamp(options.height / kLightRows, 1, kMostLightStep);
@@ -199,12 +208,13 @@ class Camera {
     const render::Image& draw_series() {
         const bool first = !series_;
         if (first)
-            series_ = std::make_unique<render::GlassSeries>(*model_.mesh, *surface_, lit_.appearance,
-                                                            glass_of(lit_, painting_), series_options(), *lit_for_);
+            series_ = std::make_unique<render::GlassSeries>(*model_.mesh, *surface_, light_.paint.appearance,
+                                                            glass_of(light_.paint, painting_), series_options(),
+                                                            *light_.series);
         std::vector<std::uint32_t> changed = std::exchange(changed_, {});
-        if (lit_for_ == render::PictureSeries::Length::moving) {
+        if (light_.series == render::PictureSeries::Length::moving) {
             changed.clear();
-            if (!first || !(lit_from_ == options_.view)) series_->look_from(options_.view);
+            if (!first || !(light_.from == options_.view)) series_->look_from(options_.view);
         }
         return series_->draw(shown_.appearance, shown_.transmission.texels, changed);
     }
@@ -218,16 +228,13 @@ class Camera {
     const stroke::Model& model_;
     render::PictureOptions options_;
     double part_ = 0;
-    PictureLook shown_, lit_;             ///< paint that is seen, and that throws the light back
-    std::vector<std::uint32_t> changed_;  ///< tiles, since the last picture
-    std::vector<double> of_tile_;         ///< difference of both, by tile
-    double difference_ = 0;
+    PictureLook shown_;                                  ///< paint that is seen
+    std::vector<std::uint32_t> changed_;                 ///< tiles, since the last picture
     std::shared_ptr<const mesh::SurfaceQuery> surface_;  ///< of the visible parts, which the series draw
     bool standing_ = false;
-    std::optional<render::PictureSeries::Length> lit_for_;  ///< series that the light is chosen for
-    render::View lit_from_;                                 ///< its first view
-    std::unique_ptr<render::GlassSeries> series_;           ///< null until its first picture
-    stroke::PartTable parts_;                               ///< of the last picture
+    Light light_;
+    std::unique_ptr<render::GlassSeries> series_;  ///< null until its first picture
+    stroke::PartTable parts_;                      ///< of the last picture
     render::Image frame_;
 };
 
