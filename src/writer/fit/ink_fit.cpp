@@ -46,6 +46,7 @@ struct Errors {
 struct Try {
     InkScore reached;
     Errors errors;
+    std::vector<float> inked;  ///< coverage of the target's cells
 };
 
 /// How the sides and the head of a path are treated when it is corrected.
@@ -252,16 +253,21 @@ FitTarget without_spikes(FitTarget target, const std::vector<Station>& stations)
     return target;
 }
 
-Try judged(const FitTarget& target, const std::vector<float>& depths, const stroke::StrokeSamples& trace,
-           const stroke::PlaneInk& ink, const std::vector<Station>& next, const std::vector<Station>& sides,
-           double unit) {
-    const std::vector<float> coverage = coverage_by(ink, target.wanted);
-    return {score_of(target, depths, coverage), errors_of(next, sides, target, {trace, ink, coverage, unit})};
+/// Draws stations and compares their ink with the target. `sides`: stations whose directions part left and right.
+Try try_out(stroke::PlaneDrawing& plane, const KnuckleTarget& goal, const BrushHand& hand, const Pace& pace,
+            const std::vector<Station>& next, const std::vector<Station>& sides) {
+    check_interrupt();
+    const stroke::StrokeSamples trace = samples_of(next, hand, pace);
+    const stroke::PlaneInk& ink = plane.draw(trace);
+    std::vector<float> inked = coverage_by(ink, goal.target.wanted);
+    Errors errors = errors_of(next, sides, goal.target, {trace, ink, inked, hand.unit});
+    return {score_of(goal.target, goal.depths, inked), std::move(errors), std::move(inked)};
 }
 
-/// The last drawings, in steps nearly as fine as those of painting. `whole`: the target with its spikes.
-void fit_finely(FitResult& best, const FitTarget& target, const FitTarget& whole, const std::vector<float>& depths,
-                const BrushHand& hand, const Pace& pace, const FitOptions& options) {
+/// The last drawings, in steps nearly as fine as those of painting.
+void fit_finely(FitResult& best, const KnuckleTarget& goal, const BrushHand& hand, const Pace& pace,
+                const FitOptions& options) {
+    const FitTarget& target = goal.target;
     // Ink depends on the step: in the steps of a painter it lies a unit beside that of the tries.
     stroke::PlaneDrawing fine(hand.preset, hand.hold, options.fine_step * hand.unit, target.wanted.cell * hand.unit);
     const std::vector<EdgeTurn> wanted_turns = wanted_edge_turns(target.wanted);
@@ -271,16 +277,12 @@ void fit_finely(FitResult& best, const FitTarget& target, const FitTarget& whole
     const double price = options.fair ? kFairPrice : kPrice;
     double best_value = 0;
     for (int t = 1; t <= options.last_tries; ++t) {
-        check_interrupt();
-        const stroke::StrokeSamples trace = samples_of(next, hand, pace);
-        const stroke::PlaneInk& ink = fine.draw(trace);
-        const Try now = judged(target, depths, trace, ink, next, next, hand.unit);
-        std::vector<float> inked = coverage_by(ink, target.wanted);
-        const double value = now.reached.score - price * sharpness_of(whole, wanted_turns, inked);
+        Try now = try_out(fine, goal, hand, pace, next, next);
+        const double value = now.reached.score - price * sharpness_of(goal.whole, wanted_turns, now.inked);
         ++best.tries;
         if (t == 1 || value > best_value) {
             best.stations = next, best.iou = now.reached.iou, best.score = now.reached.score, best_value = value;
-            best.inked = std::move(inked);
+            best.inked = std::move(now.inked);
         }
         if (t == options.last_tries) break;
         correct(next, before_last, soft, now.errors, kManners[0]);
@@ -300,20 +302,17 @@ FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& wh
                        const Pace& pace, const FitOptions& options, const std::vector<Station>& other) {
     const FitTarget target = options.fair ? without_spikes(whole, stations) : whole;
     const std::vector<float> depths = depths_of(target.wanted);
+    const KnuckleTarget goal{target, whole, depths};
     const double cell = target.wanted.cell * hand.unit;
     stroke::PlaneDrawing coarse(hand.preset, hand.hold, options.step * hand.unit, cell);
-    const auto try_out = [&](const std::vector<Station>& next, const std::vector<Station>& sides) {
-        check_interrupt();
-        const stroke::StrokeSamples trace = samples_of(next, hand, pace);
-        return judged(target, depths, trace, coarse.draw(trace), next, sides, hand.unit);
-    };
     FitResult best{.stations = stations};
     const auto fit_from = [&](const std::vector<Station>& first, const Try& first_try, const Manner& manner) {
         const std::vector<double> soft = softness_of(first);
         FitResult own{.stations = first};
         std::vector<Station> next = first;
         for (int t = 1, idle = 0; t <= options.tries && idle < options.idle; ++t) {
-            const Try now = t == 1 ? first_try : try_out(next, manner.first_sides ? first : next);
+            const Try now =
+                t == 1 ? first_try : try_out(coarse, goal, hand, pace, next, manner.first_sides ? first : next);
             const double gain = now.reached.score - own.score;
             idle = gain > 1e-4 ? 0 : idle + 1;
             if (gain > 0) own.score = now.reached.score, own.iou = now.reached.iou, own.stations = next;
@@ -331,13 +330,13 @@ FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& wh
     };
     for (const std::vector<Station>* begin : {&stations, &other}) {
         if (begin->empty() || (best.tries > 0 && best.iou >= options.weak)) continue;
-        const Try first_try = try_out(*begin, *begin);
+        const Try first_try = try_out(coarse, goal, hand, pace, *begin, *begin);
         ++best.tries;
         for (const Manner& manner : kManners)
             if (&manner == kManners || best.iou < options.weak) fit_from(*begin, first_try, manner);
     }
-    fit_finely(best, target, whole, depths, hand, pace, options);
-    take_off_knuckles(best, {target, whole, depths}, hand, pace, options);
+    fit_finely(best, goal, hand, pace, options);
+    take_off_knuckles(best, goal, hand, pace, options);
     return best;
 }
 

@@ -41,29 +41,38 @@ struct FitResult {
     std::vector<float> inked;  ///< coverage of the target's cells by them, in fine steps
 };
 
-/// Fits stations to a wanted area.
+/// Fits stations to a wanted area. Each try draws the path on a plane (`stroke::plane_ink`) in the target's cells and
+/// corrects it:
 ///
-/// Each try draws the path on a plane (`stroke::plane_ink`) in the target's cells. A wrong cell (missing +, extra −)
-/// goes to the left or right of its nearest station, as area over station spacing; extra ink that another station, more
-/// than 60 units along the path, covered first lifts that one. Extra ink beyond the head that another station than the
-/// first covered first lifts that station too; other cells beyond an end change the length. Smoothed over two stations,
-/// the path moves by 0.6 · ½ (left − right) and the half width grows by 0.5 · ½ (left + right) less the kick. Half
-/// widths stay below 16 units + the distance to the nearer tip. Cost: 0.1 ms per pose. Deterministic.
+///     centre += 0.6 · ½ (left − right) n,   half += 0.5 (½ (left + right) − kick)
 ///
-/// The best try is that of the largest score B / (B + Σ w d / 4): B cells are covered rightly, and a wrong cell of
-/// weight w lies d ≤ 24 units on the wrong side of the edge. A lump counts more than a rim of the same area. Where the
-/// best try overlaps by less than `options.weak`, it begins again in another manner (left and right are those of the
-/// first path, and the first three stations move as one), and from `other`, if that is not empty, in both. A begin in a
-/// manner ends early where its score is above 0.98 and a try gains less than 0.002, and where after t tries it is
-/// behind the best of the others by more than 0.06 / t. At last the path is corrected in steps nearly as fine as those
-/// of painting, smoothed over at most 1.2 stations; of these drawings the one is kept that has the largest score less
-/// 0.002, or 0.0015 with `options.fair`, times `sharpness_of`, a sum over its knuckles. Those that are left are taken
-/// off one by one (`take_off_knuckles`).
+/// n: normal of the path, to the left. left, right: [stations] wrong area (missing +, extra −) beside the nearest
+/// station over the spacing of stations, units. kick: [stations] extra ink that a station covered first and that lies
+/// more than 60 units along the path from it, or beyond the head. Other wrong cells beyond an end change the length.
+/// Corrections are smoothed over two stations; a half width stays below 16 units + the distance to the nearer tip.
+///
+/// A drawing is judged by the score
+///
+///     S = B / (B + Σ w d / 4)
+///
+/// B: cells covered rightly. w: weight of a wrong cell. d: its distance from the edge of the wanted area, at most 24
+/// units. So a lump counts more than a rim of the same area.
+///
+/// Steps:
+/// 1. Tries from `stations`, until `options.idle` of them gain nothing, or S > 0.98 and a try gains less than 0.002,
+///    or S is behind the best of other begins by 0.06 / t after t tries.
+/// 2. While the best overlaps by less than `options.weak`: the same with left and right told by the first path and
+///    its first three stations moved as one; then both from `other`, if that is not empty.
+/// 3. `options.last_tries` drawings in steps of `options.fine_step`, smoothed over at most 1.2 stations. The one with
+///    the largest S less 0.002 `sharpness_of` is kept, 0.0015 with `options.fair`.
+/// 4. Knuckles that are left are taken off one by one (`take_off_knuckles`).
 ///
 /// With `options.fair` the path and its half widths are made fair after each correction (`make_fair`), and wanted cells
 /// that no disc within the area reaches weigh a tenth: discs of 0.9 half widths, less what exceeds a multiple of 4
 /// units, at most 32 units. Overlap and score count those cells so too, also against `options.weak`: results of fair
 /// and other fits do not compare.
+///
+/// Cost: 0.1 ms per pose. Deterministic.
 FitResult fit_stations(const std::vector<Station>& stations, const FitTarget& target, const BrushHand& hand,
                        const Pace& pace, const FitOptions& options = {}, const std::vector<Station>& other = {});
 
