@@ -32,9 +32,9 @@ Reach reach_of(const mesh::SurfaceQuery& query, const mesh::SurfaceQuery& on_fil
     const mesh::TriangleMesh& mesh = on_film.mesh();
     const Vec3 middle = middle_of(mesh, t), normal = normal_of(mesh, t);
     if (normal == Vec3(0)) return Reach::narrow;  // neither wall nor open
-    constexpr double kRadius = 0.5 * kWidestGap;
+    constexpr double kRadius = 0.5 * kBridgedGap;
     if (!query.closest_point(middle + kRadius * normal, kTouch * kRadius)) return Reach::open;
-    const auto hit = query.ray(middle + kOff * normal, normal, 0, kWidestGap);
+    const auto hit = query.ray(middle + kOff * normal, normal, 0, kBridgedGap);
     if (!hit || glm::dot(normal_of(query.mesh(), hit->triangle), normal) >= kFacing) return Reach::narrow;
     facing = on_film.trace(Vec3f(middle + kOff * normal), Vec3f(normal), 0, static_cast<float>(hit->distance + kOff))
                  .triangle;
@@ -91,7 +91,7 @@ std::vector<std::uint8_t> find_gaps(const mesh::TriangleMesh& model, const FilmM
             const std::uint32_t next = twin[h] / 3;
             if (in_gap[next] || reach[next] == Reach::open) continue;
             const double far = distance + glm::length(middle_of(film.mesh, next) - middle_of(film.mesh, t));
-            if (far <= 0.5 * kWidestGap) queue.emplace(far, next);
+            if (far <= 0.5 * kBridgedGap) queue.emplace(far, next);
         }
     }
     return in_gap;
