@@ -6,6 +6,7 @@
 
 #include "core/ease.h"
 #include "core/geometry/solid_noise.h"
+#include "core/hat.h"
 #include "core/simd.h"
 
 namespace tuft::stroke {
@@ -46,9 +47,9 @@ TUFT_CLONES void add_hat(double* __restrict weight, double* __restrict load, int
                          const WeightedHat& of) {
     const auto [centre, reach, height, value] = of;
     for (int i = first; i <= last; ++i) {
-        const double hat = height * (1 - std::abs(i - centre) / reach);
-        weight[i] += hat;
-        load[i] += hat * value;
+        const double share = height * hat(i - centre, reach);
+        weight[i] += share;
+        load[i] += share * value;
     }
 }
 
