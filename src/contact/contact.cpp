@@ -68,7 +68,7 @@ Recycled<NodeContact> find_tuft_contacts(const Step& w, const brush::TuftBend& t
     if (w.foam) return find_column_contacts(w.surface, w.pose, w.root, nodes, w.search);
     Recycled<NodeContact> out;
     for (const brush::Spine& spine : tuft.spines) {
-        const std::size_t first = out.size(), count = spine.rest_radius.size();
+        const std::size_t first = out.size(), count = spine.rest.radius.size();
         const auto part = [&](auto all) {
             return all.size() >= first + count ? all.subspan(first, count) : decltype(all){};
         };
@@ -93,14 +93,14 @@ Recycled<NodeContact> find_tuft_contacts(const Step& w, const brush::TuftBend& t
 Recycled<double> node_radii(const brush::Tuft& tuft) {
     Recycled<double> out;
     for (const brush::Spine& spine : tuft.spines)
-        out.insert(out.end(), spine.rest_radius.rbegin(), spine.rest_radius.rend());
+        out.insert(out.end(), spine.rest.radius.rbegin(), spine.rest.radius.rend());
     return out;
 }
 
 /// Nodes of each spine.
 Recycled<std::size_t> spine_lengths(const brush::Tuft& tuft) {
     Recycled<std::size_t> out;
-    for (const brush::Spine& spine : tuft.spines) out.push_back(spine.rest_radius.size());
+    for (const brush::Spine& spine : tuft.spines) out.push_back(spine.rest.radius.size());
     return out;
 }
 
@@ -202,7 +202,7 @@ struct RestSearch {
     Recycled<std::size_t> lengths;
     Recycled<ContactPlane> beside;  // walls of the sides
 
-    NodeRadii node_radius(const brush::Tuft& tuft) const { return {radii, radii[tuft.trunk().rest_radius.size() - 1]}; }
+    NodeRadii node_radius(const brush::Tuft& tuft) const { return {radii, radii[tuft.trunk().rest.radius.size() - 1]}; }
 };
 
 Attempt bend_against(Recycled<NodeWalls> walls, const RestSearch& in, brush::Tuft& tuft, brush::StepStart& start) {
@@ -240,12 +240,10 @@ Attempt find_rest(Recycled<NodeWalls> walls, const Recycled<NodeContact>& predic
         std::swap(static_cast<brush::TuftBend&>(tuft), solved);
         static_cast<brush::TuftBend&>(tuft) = before;
         Attempt next = bend_against(std::move(renewed), in, tuft, start);
-        next.state.iterations += last.state.iterations;
         next.state.work += last.state.work;
         // Between two faces of a rim the planes at the new places may leave no rest: the solve ends anywhere, with a
         // force of many newtons. The planes before are off by less than a tuft moves in a sample.
         if (!next.state.converged && last.state.converged) {
-            last.state.iterations = next.state.iterations;
             last.state.work = next.state.work;
             std::swap(static_cast<brush::TuftBend&>(tuft), solved);
             break;

@@ -49,18 +49,17 @@ bool is_clear(const mesh::SurfaceQuery& query, const Tool& tool, const brush::Po
     return true;
 }
 
-brush::Pose between(const brush::Pose& a, const brush::Pose& b, double t) {
-    return {a.position + t * (b.position - a.position), glm::slerp(a.rotation, b.rotation, t), 0};
-}
-
-/// The poses of a polyline at steps of at most `step` metres, or 5°.
+/// The poses of a polyline at steps of at most `step` metres, or 5°, without times.
 std::vector<brush::Pose> densified(const std::vector<brush::Pose>& corners, double step) {
     std::vector<brush::Pose> poses{corners.front()};
     for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
         const double n =
             std::ceil(std::max(glm::length(corners[i + 1].position - corners[i].position) / step,
                                angle_between(corners[i].rotation, corners[i + 1].rotation) / (std::numbers::pi / 36)));
-        for (int k = 1; k <= n; ++k) poses.push_back(between(corners[i], corners[i + 1], k / n));
+        for (int k = 1; k <= n; ++k) {
+            poses.push_back(brush::interpolate(corners[i], corners[i + 1], k / n));
+            poses.back().time = 0;
+        }
     }
     return poses;
 }

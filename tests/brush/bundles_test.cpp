@@ -166,7 +166,7 @@ TEST(Bundles, ChildrenOfAnyNumberAddUpToTheirParent) {
             area += b.sections[1].a * b.sections[1].b;
         }
         for (const Spine& sub_spine : tuft.sub_spines) stiffness += sub_spine.rod.stiffness.back();
-        const double r = tuft.trunk().rest_radius[tuft.trunk().rest_radius.size() - 2];
+        const double r = tuft.trunk().rest.radius[tuft.trunk().rest.radius.size() - 2];
         EXPECT_NEAR(shares, 1, 1e-12);
         EXPECT_NEAR(area, r * r, 1e-9 * r * r);
         EXPECT_NEAR(stiffness / tuft.trunk().rod.stiffness.back(), 1, 1e-12);

@@ -24,7 +24,7 @@ struct Row {
     Load load;
 
     Row(int count, double pitch, int n = 12, const Profile& profile = {.alpha = 0, .beta = 0}) {
-        law.tolerance = 1e-9;
+        law.limits.tolerance = 1e-9;
         for (int k = 0; k < count; ++k) {
             Rod rod = make_rod(profile, n, 1);
             for (double& s : rod.stiffness) s /= count;
@@ -57,13 +57,13 @@ struct Row {
 Law soft_contact() {
     Law law;
     law.points_per_segment = 6;
-    law.stiffness = 2000;
-    law.friction = 0.3;
-    law.onset = 0.002;
-    law.tolerance = 1e-9;
-    law.pass_tolerance = 1e-8;
-    law.max_passes = 200;
-    law.max_iterations = 2000;
+    law.normal.stiffness = 2000;
+    law.friction.coefficient = 0.3;
+    law.normal.onset = 0.002;
+    law.limits.tolerance = 1e-9;
+    law.limits.pass_tolerance = 1e-8;
+    law.limits.max_passes = 200;
+    law.limits.max_iterations = 2000;
     return law;
 }
 
@@ -89,8 +89,8 @@ TEST(CoupledRods, UncoupledRodsBearWhatOneBears) {
     Rod one = make_rod({.alpha = 0, .beta = 0}, 12, 1);
     Memory memory = make_memory(one, {});
     Law law = row.law;
-    row.law.stiffness /= 5;
-    row.law.stick_stiffness /= 5;
+    row.law.normal.stiffness /= 5;
+    row.law.friction.stick_stiffness /= 5;
     for (int i = 0; i < 8; ++i) {
         const double down = -0.01 * i;
         // Leaning, so that no hair stands upright and could fall to either side.
@@ -111,7 +111,7 @@ TEST(CoupledRods, UncoupledRodsBearWhatOneBears) {
 TEST(CoupledRods, EliminationSolvesTheDenseSystem) {
     Row row(4, 0.08);
     row.law = soft_contact();
-    row.law.stiffness /= 4;
+    row.law.normal.stiffness /= 4;
     row.obstacles.assign(13, {{0, 0, -0.85}, {0, 0.1, std::sqrt(1 - 0.01)}, 0.03});
     row.coupling = {.contact = 500, .spread = 20, .film = 0.01, .film_range = 0.02, .shear = 200, .friction = 0.3};
     for (int i = 0; i < 5; ++i) {
@@ -160,8 +160,8 @@ TEST(CoupledRods, WetFilmZipsTwoRodsFromAGap) {
         lengths.insert(lengths.end(), kSegments - kFine, (1 - kFineLength) / (kSegments - kFine));
         Row row(2, touching + gap, kSegments);
         row.touching[0].assign(kSegments + 1, touching);
-        row.law.max_iterations = 4000;
-        row.law.max_passes = 60;
+        row.law.limits.max_iterations = 4000;
+        row.law.limits.max_passes = 60;
         // A film thin beside the gap, and contact so stiff that the film's bond is stable.
         row.coupling = {.contact = 24 * film / 4e-6, .film = film, .film_range = 2e-3};
         const double overlap = row.coupling.rest_gap(), work = film - 0.5 * row.coupling.contact * overlap * overlap;
@@ -198,12 +198,12 @@ double roll_stiffness_ratio(Row row, std::span<const CoupledPair> pairs) {
     // Only the tips touch, so lightly that no rod buckles, and hold by friction.
     row.obstacles.assign(segments + 1, {{0, 0, -5}, {0, 0, 1}, 0});
     row.obstacles.back() = {{0, 0, -1}, {0, 0, 1}, 1e-4};
-    row.law.stiffness = 1e3;
-    row.law.stick_stiffness = 1e7;
-    row.law.friction = 1e3;
-    row.law.pass_tolerance = 1e-9;
-    row.law.max_passes = 300;
-    row.law.max_iterations = 4000;
+    row.law.normal.stiffness = 1e3;
+    row.law.friction.stick_stiffness = 1e7;
+    row.law.friction.coefficient = 1e3;
+    row.law.limits.pass_tolerance = 1e-9;
+    row.law.limits.max_passes = 300;
+    row.law.limits.max_iterations = 4000;
     const auto count = static_cast<double>(row.rods.size());
     solve_coupled(row.problem(), pairs, row.coupling);
     double stiffness = 0, torque = 0;

@@ -23,8 +23,8 @@ Bent bend(const Profile& profile, int n, Vec3 force, double end_moment, int step
     const Rod rod = make_rod(profile, n, 0.6);
     Memory memory = make_memory(rod, kClamp);
     Law law;
-    law.tolerance = 1e-10;
-    law.max_iterations = 200;
+    law.limits.tolerance = 1e-10;
+    law.limits.max_iterations = 200;
     Result r;
     for (int i = 1; i <= steps; ++i) {
         const double part = static_cast<double>(i) / steps;

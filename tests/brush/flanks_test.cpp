@@ -42,7 +42,7 @@ struct Drawn {
 Drawn draw(const char* name, double left, double right, bool with_walls = true, bool lift = false) {
     Drawn out{.tuft = make_tuft(load_preset(name))};
     const double length = out.tuft.preset.length;
-    const std::vector<ContactPlane> planes(out.tuft.trunk().rest_radius.size());
+    const std::vector<ContactPlane> planes(out.tuft.trunk().rest.radius.size());
     Pose before;
     Vec3 force{0};
     const int steps = lift ? 1800 : 1400;

@@ -216,7 +216,7 @@ TEST(MacroCluster, CopiesAreWhatTheyWouldBeAlone) {
     const TuftState a = papers::draw(*clustered, p, stroke);
     stroke.direction = glm::normalize(Vec3{1, 1e-7, 0});
     const TuftState b = papers::draw(*alone, p, stroke);
-    EXPECT_LT(a.iterations, b.iterations);
+    EXPECT_LT(a.work.iterations, b.work.iterations);
     ASSERT_EQ(a.branches.size(), b.branches.size());
     for (std::size_t k = 0; k < a.branches.size(); ++k)
         for (std::size_t i = 0; i < a.branches[k].sections.size(); ++i) {

@@ -34,8 +34,8 @@ Cycle load_and_unload(const Profile& profile, int n, double load) {
     const Rod rod = make_rod(profile, n, 0.6);
     Memory memory = make_memory(rod, kClamp);
     Law law;
-    law.tolerance = 1e-11;
-    law.max_iterations = 300;
+    law.limits.tolerance = 1e-11;
+    law.limits.max_iterations = 300;
     Cycle out;
     Result r;
     const auto go = [&](double p) {
@@ -117,7 +117,7 @@ TEST(PlasticRod, PartlyPlasticHairKeepsLessSetThanItsShareAllows) {
     rod.plastic_share = 0.3;
     Memory memory = make_memory(rod, kClamp);
     Law law;
-    law.max_iterations = 300;
+    law.limits.max_iterations = 300;
     for (int i = 1; i <= 40; ++i) solve(rod, memory, kClamp, {.law = law, .load = {{0, 0.1 * i, 0}}});
     for (int i = 39; i >= 0; --i) solve(rod, memory, kClamp, {.law = law, .load = {{0, 0.1 * i, 0}}});
     Vec3 t = kClamp.tangent;

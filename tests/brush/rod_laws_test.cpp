@@ -14,8 +14,8 @@ double tip_error(const Profile& profile, int n, const Vec3& load, const Vec3& ex
     const Rod rod = make_rod(profile, n, 0.6);
     Memory memory = make_memory(rod, kClamp);
     Law law;
-    law.tolerance = 1e-11;
-    law.max_iterations = 300;
+    law.limits.tolerance = 1e-11;
+    law.limits.max_iterations = 300;
     for (int i = 1; i <= 4; ++i) solve(rod, memory, kClamp, {.law = law, .load = {(0.25 * i) * load}});
     return glm::length(memory.node.back() - exact);
 }
@@ -29,8 +29,8 @@ TEST(RodLaws, TipErrorFallsFourfoldWhenSegmentsDouble) {
         const Rod rod = make_rod(profile, n, 0.6);
         Memory memory = make_memory(rod, kClamp);
         Law law;
-        law.tolerance = 1e-11;
-        law.max_iterations = 300;
+        law.limits.tolerance = 1e-11;
+        law.limits.max_iterations = 300;
         for (int i = 1; i <= 4; ++i) solve(rod, memory, kClamp, {.law = law, .load = {(0.25 * i) * load}});
         return memory.node.back();
     };
@@ -49,7 +49,7 @@ TEST(RodLaws, SmallLoadsReduceToLinearTheory) {
         const Rod rod = make_rod(profile, 64, 0.6);
         Memory memory = make_memory(rod, kClamp);
         Law law;
-        law.tolerance = 1e-13;
+        law.limits.tolerance = 1e-13;
         solve(rod, memory, kClamp, {.law = law, .load = {{0, load, 0}}});
         const double w = small_deflection(profile, 1).w;
         // 64 segments: error of second order, below 0.1 % for these profiles.
@@ -76,21 +76,21 @@ Scene rough_scene(bool hard, Under under = Under::plane) {
     Clamp clamp = high;
     clamp.side = glm::normalize(glm::cross(clamp.tangent, Vec3{0.3, 1, 0.2}));
     s.memory = make_memory(s.rod, clamp);
-    s.law.hard = hard;
-    s.law.stiffness = hard ? 1e3 : 60;
-    s.law.core_stiffness = 600;
-    s.law.core_start = 0.5;
-    s.law.onset = 0.01;
-    s.law.adhesion = 0.2;
-    s.law.adhesion_range = 0.03;
+    s.law.normal.hard = hard;
+    s.law.normal.stiffness = hard ? 1e3 : 60;
+    s.law.normal.core_stiffness = 600;
+    s.law.normal.core_start = 0.5;
+    s.law.normal.onset = 0.01;
+    s.law.adhesion.strength = 0.2;
+    s.law.adhesion.range = 0.03;
     s.law.points_per_segment = 2;
-    s.law.friction = 0.4;
-    s.law.grain = 0.35;
-    s.law.pore_grip = 0.5;
-    s.law.stick_stiffness = 800;
-    s.law.max_iterations = 200;
-    s.law.end_compliance = 0.06;
-    s.law.damping = 0.7;
+    s.law.friction.coefficient = 0.4;
+    s.law.friction.grain = 0.35;
+    s.law.friction.pore_grip = 0.5;
+    s.law.friction.stick_stiffness = 800;
+    s.law.limits.max_iterations = 200;
+    s.law.normal.end_compliance = 0.06;
+    s.law.joints.damping = 0.7;
     s.law.edge = 0.04;
     Obstacle o;
     o.normal = glm::normalize(Vec3{0.1, -0.05, 1});
@@ -286,12 +286,12 @@ TEST(RodLaws, ThePotentialNeverRisesFromStepToStep) {
         Recycled<Obstacle> planes(17, {{0, 0, 0}, {0, 0, 1}, 0.06});
         Law law;
         law.points_per_segment = 6;
-        law.stiffness = 60;
-        law.core_stiffness = 3000;
-        law.onset = 1e-3;
-        law.adhesion = trial % 2 == 0 ? 0.5 : 0;
-        law.adhesion_range = 0.03;
-        law.tolerance = 1e-9;
+        law.normal.stiffness = 60;
+        law.normal.core_stiffness = 3000;
+        law.normal.onset = 1e-3;
+        law.adhesion.strength = trial % 2 == 0 ? 0.5 : 0;
+        law.adhesion.range = 0.03;
+        law.limits.tolerance = 1e-9;
         if (trial % 4 == 1) {  // over an edge, each node by the face that it is nearest to
             law.edge = 6e-3;
             const Vec3 left = glm::normalize(Vec3{-0.5, 0, 1}), right = glm::normalize(Vec3{0.5, 0, 1});
@@ -301,7 +301,7 @@ TEST(RodLaws, ThePotentialNeverRisesFromStepToStep) {
         double before = probe_energy(rod, start, {.obstacles = planes, .law = law}, still).value;
         const double first = before;
         for (int k = 1; k <= 60; ++k) {
-            law.max_iterations = k;
+            law.limits.max_iterations = k;
             Memory memory = start;
             const Result r = solve(rod, memory, clamp, {.obstacles = planes, .law = law});
             const double now = probe_energy(rod, memory, {.obstacles = planes, .law = law}, still).value;
@@ -322,11 +322,11 @@ TEST(RodLaws, EndsThatMeetTheSurfaceEndOnHaveTheirCompliance) {
     const double give = 0.03, buckling = rod.buckling;
     for (double& k : rod.stiffness) k *= 1e6;
     Law law;
-    law.stiffness = 1e7;
+    law.normal.stiffness = 1e7;
     law.points_per_segment = 24;
-    law.end_compliance = give;
-    law.friction = 0;
-    law.max_iterations = 200;
+    law.normal.end_compliance = give;
+    law.friction.coefficient = 0;
+    law.limits.max_iterations = 200;
     const Recycled<Obstacle> plane(17);
     double before = 0;
     for (int i = 1; i <= 10; ++i) {
@@ -363,10 +363,10 @@ TEST(RodLaws, DampingOnlyDelays) {
     const Clamp clamp{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     Memory memory = make_memory(rod, clamp);
     Law law;
-    law.tolerance = 1e-12;
+    law.limits.tolerance = 1e-12;
     Result r = solve(rod, memory, clamp, {.law = law, .load = {{0, 0.2, 0}}});
     const double stored = r.bend_energy, start = memory.node.back().y;
-    law.damping = 50;  // τ/Δt
+    law.joints.damping = 50;  // τ/Δt
     double lost = 0;
     for (int i = 0; i < 50; ++i) {
         r = solve(rod, memory, clamp, {.law = law});
@@ -384,14 +384,14 @@ TEST(RodLaws, DampingOnlyDelays) {
 TEST(RodLaws, RootCarriesWhatTheContactsGiveAndFrictionStaysInItsCone) {
     const Rod rod = make_rod({-1, -0.8}, 16, 0.5);
     Law law;
-    law.stiffness = 60;
-    law.core_stiffness = 3000;
-    law.friction = 0.35;
-    law.stick_stiffness = 2000;
-    law.onset = 2e-3;
-    law.tolerance = 1e-8;
-    law.pass_tolerance = 1e-3;
-    law.max_iterations = 2000;
+    law.normal.stiffness = 60;
+    law.normal.core_stiffness = 3000;
+    law.friction.coefficient = 0.35;
+    law.friction.stick_stiffness = 2000;
+    law.normal.onset = 2e-3;
+    law.limits.tolerance = 1e-8;
+    law.limits.pass_tolerance = 1e-3;
+    law.limits.max_iterations = 2000;
     Recycled<Obstacle> plane(17);
     for (int i = 0; i <= 16; ++i) plane[i].radius = 0.09 * (1 - i / 16.2);
     Clamp clamp{{0, 0, 0.98}, glm::normalize(Vec3{0.1, 0, -1}), {0, 1, 0}};
@@ -410,8 +410,8 @@ TEST(RodLaws, RootCarriesWhatTheContactsGiveAndFrictionStaysInItsCone) {
             const Vec3 f = r.contact_force[k];
             const double tangential = std::hypot(f.x, f.y);
             // N̂ lags by at most the pass tolerance of the whole force.
-            EXPECT_LE(tangential, law.friction * r.normal_force[k] + 1e-3 * r.force.z);
-            if (tangential > 0.99 * law.friction * r.normal_force[k] && i > 60) {
+            EXPECT_LE(tangential, law.friction.coefficient * r.normal_force[k] + 1e-3 * r.force.z);
+            if (tangential > 0.99 * law.friction.coefficient * r.normal_force[k] && i > 60) {
                 EXPECT_LE(f.x * (memory.node[k] - before[k]).x + f.y * (memory.node[k] - before[k]).y, 1e-9);
             }
         }
@@ -426,21 +426,21 @@ TEST(RodLaws, WorkOfTheHandEqualsStoredPlusLostEnergy) {
     Rod rod = make_rod({-1, -0.8, 0.6, -1}, 16, 0.5);
     rod.plastic_share = 0.3;
     Law law;
-    law.stiffness = 60;
-    law.core_stiffness = 3000;
-    law.friction = 0.3;
-    law.stick_stiffness = 4000;
-    law.pass_tolerance = 1e-4;
-    law.tolerance = 1e-9;
-    law.max_iterations = 300;
-    law.max_passes = 40;
+    law.normal.stiffness = 60;
+    law.normal.core_stiffness = 3000;
+    law.friction.coefficient = 0.3;
+    law.friction.stick_stiffness = 4000;
+    law.limits.pass_tolerance = 1e-4;
+    law.limits.tolerance = 1e-9;
+    law.limits.max_iterations = 300;
+    law.limits.max_passes = 40;
     Recycled<Obstacle> plane(17);
     for (int i = 0; i <= 16; ++i) plane[i].radius = 0.09 * (1 - i / 16.2);
     // With all that takes energy on the way: ends that give, damped joints, a set that recovers.
-    law.end_compliance = 0.016;
-    law.end_friction = 0.2;
-    law.damping = 2;
-    law.recovery = 1e-3;
+    law.normal.end_compliance = 0.016;
+    law.friction.end_share = 0.2;
+    law.joints.damping = 2;
+    law.joints.recovery = 1e-3;
     Clamp clamp{{0, 0, 1.01}, glm::normalize(Vec3{0.15, 0, -1}), {0, 1, 0}};
     Memory memory = make_memory(rod, clamp);
     double work = 0, lost = 0;
@@ -467,13 +467,13 @@ TEST(RodLaws, ARecoveringSetOnlyLosesEnergyAndComesBack) {
     rod.plastic_share = 0.5;
     Memory memory = make_memory(rod, kClamp);
     Law law;
-    law.tolerance = 1e-10;
-    law.max_iterations = 300;
+    law.limits.tolerance = 1e-10;
+    law.limits.max_iterations = 300;
     for (int i = 1; i <= 20; ++i) solve(rod, memory, kClamp, {.law = law, .load = {{0, 0.02 * i, 0}}});
     Result r = solve(rod, memory, kClamp, {.law = law});
     const double set = memory.node.back().y;
     ASSERT_GT(set, 0.02);
-    law.recovery = 0.05;
+    law.joints.recovery = 0.05;
     double stored = r.bend_energy, before = set;
     const double at_start = stored;
     double lost = 0;
@@ -490,9 +490,9 @@ TEST(RodLaws, ARecoveringSetOnlyLosesEnergyAndComesBack) {
     EXPECT_NEAR(lost, at_start - stored, 0.05 * at_start);
     EXPECT_LT(before, 0.15 * set);
     // Bent hair that is held gains nothing by waiting.
-    law.recovery = 0;
+    law.joints.recovery = 0;
     solve(rod, memory, kClamp, {.law = law, .load = {{0, 0.3, 0}}});
-    law.recovery = 0.2;
+    law.joints.recovery = 0.2;
     const double held = memory.node.back().y;
     for (int i = 0; i < 20; ++i) solve(rod, memory, kClamp, {.law = law, .load = {{0, 0.3, 0}}});
     EXPECT_GE(memory.node.back().y, held - 1e-3);
@@ -501,10 +501,10 @@ TEST(RodLaws, ARecoveringSetOnlyLosesEnergyAndComesBack) {
 TEST(RodLaws, ElasticFrictionlessCycleReturnsExactly) {
     const Rod rod = make_rod({-1, -0.8}, 16, 0.5);
     Law law;
-    law.stiffness = 60;
-    law.core_stiffness = 3000;
-    law.tolerance = 1e-11;
-    law.max_iterations = 2000;
+    law.normal.stiffness = 60;
+    law.normal.core_stiffness = 3000;
+    law.limits.tolerance = 1e-11;
+    law.limits.max_iterations = 2000;
     Recycled<Obstacle> plane(17);
     for (int i = 0; i <= 16; ++i) plane[i].radius = 0.09 * (1 - i / 16.2);
     Clamp clamp{{0, 0, 0.8}, glm::normalize(Vec3{0.3, 0, -1}), {0, 1, 0}};

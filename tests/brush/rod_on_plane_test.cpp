@@ -12,14 +12,14 @@ namespace {
 /// Weightless, thin and rigid plane: the limit the reference was computed for.
 Law hard_law(double mu) {
     Law law;
-    law.hard = true;
-    law.stiffness = 3e5;
-    law.stick_stiffness = 1e4;
-    law.friction = mu;
-    law.tolerance = 1e-9;
-    law.max_iterations = 400;
-    law.pass_tolerance = 1e-4;
-    law.max_passes = 60;
+    law.normal.hard = true;
+    law.normal.stiffness = 3e5;
+    law.friction.stick_stiffness = 1e4;
+    law.friction.coefficient = mu;
+    law.limits.tolerance = 1e-9;
+    law.limits.max_iterations = 400;
+    law.limits.pass_tolerance = 1e-4;
+    law.limits.max_passes = 60;
     return law;
 }
 

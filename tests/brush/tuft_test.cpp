@@ -65,7 +65,7 @@ TEST(Tuft, SegmentsKeepTheirLengthAndSectionsTheirArea) {
     const Recycled<Section>& sections = state.branches.front().sections;
     ASSERT_EQ(sections.size(), x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
-        const double r = tuft.trunk().rest_radius[x.size() - 1 - i];
+        const double r = tuft.trunk().rest.radius[x.size() - 1 - i];
         EXPECT_NEAR(sections[i].a * sections[i].b, r * r, 1e-12 * r * r);
         EXPECT_LE(sections[i].a, tuft.preset.flatten_max * r * (1 + 1e-12));
         EXPECT_NEAR(glm::dot(sections[i].e, sections[i].tangent), 0, 1e-12);
@@ -458,7 +458,7 @@ TEST(Tuft, SplitsWhenBentAndDryAndMergesWhenWetAgain) {
     // The tips have the tuft's tip area between them and lie apart.
     double area = 0;
     for (const Branch& b : state.branches) area += b.sections[1].a * b.sections[1].b;
-    const double r = tuft.trunk().rest_radius[15];
+    const double r = tuft.trunk().rest.radius[15];
     EXPECT_NEAR(area, r * r, 1e-9 * r * r);
     EXPECT_GT(glm::length(state.branches[0].sections[0].centre - state.branches[2].sections[0].centre), 5e-4);
     // They leave side by side from edge to edge of the trunk, as flat as it is.
@@ -471,7 +471,7 @@ TEST(Tuft, SplitsWhenBentAndDryAndMergesWhenWetAgain) {
         // The next section, a segment on, goes on from there; one that began round was not half as wide.
         EXPECT_GT(state.branches[side].sections[leave - 1].a, 0.7 * root.a);
     }
-    EXPECT_EQ(predicted_nodes(tuft, tuft.pose).size(), 17 + 3 * tuft.sub_spines[0].rest_radius.size());
+    EXPECT_EQ(predicted_nodes(tuft, tuft.pose).size(), 17 + 3 * tuft.sub_spines[0].rest.radius.size());
     tuft.ink_left = 1;
     const ContactPlane plane;
     step(tuft, tuft.pose, {&plane, 1}, 0.01);
@@ -503,7 +503,7 @@ TEST(Tuft, TenThousandRandomPosesStayFiniteAndBounded) {
             ASSERT_TRUE(std::isfinite(state.normal_force) && std::isfinite(glm::length(state.force)));
             // The rod and three sub-spines: 60 each, the last of which may cost five trials and the
             // eigenvectors' twelve.
-            ASSERT_LE(state.iterations, 4 * (59 + 17));
+            ASSERT_LE(state.work.iterations, 4 * (59 + 17));
             for (const Branch& b : state.branches) {
                 for (const Section& s : b.sections) {
                     ASSERT_TRUE(std::isfinite(glm::length(s.centre)) && std::isfinite(s.a) &&

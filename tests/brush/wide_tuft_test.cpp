@@ -193,7 +193,7 @@ TEST(WideTuft, BentSectionsKeepTheirArea) {
         Tuft tuft = make_tuft(load_preset(name), 1);
         const TuftState state = dragged(tuft, {.depth = 0.25, .lean = 0.4});
         for (std::size_t k = 0; k < tuft.spines.size(); ++k) {
-            const Recycled<double>& rest = tuft.spines[k].rest_radius;
+            const Recycled<double>& rest = tuft.spines[k].rest.radius;
             const Recycled<Section>& bent = state.branches[k].sections;
             for (std::size_t i = 0; i < rest.size(); ++i)
                 EXPECT_NEAR(bent[bent.size() - 1 - i].a * bent[bent.size() - 1 - i].b, rest[i] * rest[i],

@@ -286,7 +286,7 @@ void ChainModel::add_forces(const ChainSolution& solution, const OneSpine& spine
     state.energy.bend += joule * solution.bend_energy;
     state.energy.lost += joule * std::max(0.0, solution.dissipation);
     state.converged = state.converged && solution.converged;
-    state.iterations += solution.iterations;
+    state.work.iterations += solution.iterations;
 }
 
 TuftState ChainModel::step(const SpineModelInput& input) {

@@ -146,7 +146,7 @@ TuftState MacroModel::make_state(const Collision& collision, double wetness) con
         load(macro, collision, wetness, branch, state);
         state.branches.push_back(std::move(branch));
     }
-    state.iterations = static_cast<int>(clusters_.size());
+    state.work.iterations = static_cast<int>(clusters_.size());
     return state;
 }
 

@@ -61,7 +61,7 @@ struct EndOn {
 
 /// min_s s²/(2 compliance) + contact(depth - c s). With e the indentation left, s = compliance c f(e) and
 /// e + compliance c² f(e) = depth, whose left side is convex and grows with e: Newton from above.
-EndOn end_on(const Law& law, double weight, double radius, double depth, double c, double compliance) {
+EndOn end_on(const NormalLaw& law, double weight, double radius, double depth, double c, double compliance) {
     const double soft = compliance * c * c;
     double e = depth;
     NormalForce f = normal_force(law, weight, radius, e, 0);
@@ -98,20 +98,21 @@ Distance distance_of(const Obstacle& o, const Crease& crease, double edge, const
 
 bool is_clear(const Frozen& frozen, int k, const Evaluation& at) {
     const Law& law = *frozen.law;
+    const ContactPoints& points = frozen.points;
     const int per = law.points_per_segment, n = frozen.rod->segments();
-    if (per < 3 || law.hard) return false;
+    if (per < 3 || law.normal.hard) return false;
     const PointRange range = points_of(k, per, n);
     double reach = 0;
     for (int p = range.begin; p < range.end; ++p) {
-        if (frozen.crease[p].share > 0) return false;
-        reach = std::max(reach, frozen.obstacles[p].radius);
+        if (points.crease[p].share > 0) return false;
+        reach = std::max(reach, points.obstacles[p].radius);
     }
-    reach = 1.5 * (reach + law.adhesion_range);
+    reach = 1.5 * (reach + law.adhesion.range);
     // The hair lies between its nodes, and a point's plane between its neighbours' planes, which are of one
     // surface here.
-    const Stencil& stencil = frozen.stencil[range.begin];
+    const Stencil& stencil = points.stencil[range.begin];
     for (const int p : {range.begin, std::clamp(per * k, range.begin, range.end - 1), range.end - 1}) {
-        const Obstacle& o = frozen.obstacles[p];
+        const Obstacle& o = points.obstacles[p];
         for (int i = stencil.first; i < stencil.first + stencil.count; ++i) {
             if (glm::dot(at.node[i] - o.origin, o.normal) < reach) return false;
         }
@@ -123,7 +124,8 @@ namespace {
 
 TUFT_CLONES double add_point(const Frozen& frozen, int p, bool derivatives, Evaluation& out) {
     const Law& law = *frozen.law;
-    const Stencil& at = frozen.stencil[p];
+    const ContactPoints& points = frozen.points;
+    const Stencil& at = points.stencil[p];
     const Vec3 x = at.at(out.node);
     Vec3 slope{0};
     Sym3 curvature;
@@ -132,24 +134,24 @@ TUFT_CLONES double add_point(const Frozen& frozen, int p, bool derivatives, Eval
         if (is_clear_of_edge(frozen, p, x)) return 0;
         energy = add_hair_at_edge(frozen, p, derivatives, out);
         out.contact += energy;
-        add_friction(frozen.friction[p], frozen.friction[p].normal, x, energy, slope, curvature);
+        add_friction(points.friction[p], points.friction[p].normal, x, energy, slope, curvature);
         if (derivatives) add_potential(at, slope, curvature, out);
         return energy;
     }
-    const Obstacle& o = frozen.obstacles[p];
-    const Distance at_surface = distance_of(o, frozen.crease[p], law.edge, x);
+    const Obstacle& o = points.obstacles[p];
+    const Distance at_surface = distance_of(o, points.crease[p], law.edge, x);
     const double depth = o.radius - at_surface.z;
-    if (depth <= -law.adhesion_range && !law.hard) return 0;
+    if (depth <= -law.adhesion.range && !law.normal.hard) return 0;
     const Vec3& n = at_surface.slope;
     const double c = glm::dot(at.inwards(out.node), n);
     EndOn f;
-    if (depth > 0 && c > 0 && frozen.compliance[p] > 0 && frozen.crease[p].share <= 0) {
-        f = end_on(law, frozen.weight[p], o.radius, depth, c, frozen.compliance[p]);
+    if (depth > 0 && c > 0 && points.compliance[p] > 0 && points.crease[p].share <= 0) {
+        f = end_on(law.normal, points.weight[p], o.radius, depth, c, points.compliance[p]);
     } else {
-        const NormalForce whole = normal_force(law, frozen.weight[p], o.radius, depth, frozen.multiplier[p]);
+        const NormalForce whole = normal_force(law.normal, points.weight[p], o.radius, depth, points.multiplier[p]);
         f = {.energy = whole.energy, .d = whole.force, .dd = whole.stiffness};
     }
-    const NormalForce pull = adhesion(law, frozen.weight[p], -depth);
+    const NormalForce pull = adhesion(law.adhesion, points.weight[p], -depth);
     energy = f.energy + pull.energy;
     out.contact += energy;
     slope = (pull.force - f.d) * n;
@@ -157,7 +159,7 @@ TUFT_CLONES double add_point(const Frozen& frozen, int p, bool derivatives, Eval
     if (at_surface.bend != 0) {
         curvature += (pull.force - f.d) * at_surface.bend * outer(at_surface.across);
     }
-    add_friction(frozen.friction[p], frozen.friction[p].normal, x, energy, slope, curvature);
+    add_friction(points.friction[p], points.friction[p].normal, x, energy, slope, curvature);
     if (!derivatives) return energy;
     out.normal[p] = f.d;
     add_potential(at, slope, curvature, out);
@@ -177,10 +179,11 @@ double add_contact(const Frozen& frozen, int p, bool derivatives, Evaluation& ou
 }
 
 Obstacle met_by(const Frozen& frozen, int p, const Recycled<Vec3>& node) {
-    const Obstacle& o = frozen.obstacles[p];
-    if (frozen.crease[p].share <= 0) return {o.origin, o.normal, o.radius};
-    const Vec3 x = frozen.stencil[p].at(node);
-    const Distance d = distance_of(o, frozen.crease[p], frozen.law->edge, x);
+    const ContactPoints& points = frozen.points;
+    const Obstacle& o = points.obstacles[p];
+    if (points.crease[p].share <= 0) return {o.origin, o.normal, o.radius};
+    const Vec3 x = points.stencil[p].at(node);
+    const Distance d = distance_of(o, points.crease[p], frozen.law->edge, x);
     const double size = glm::length(d.slope);
     const Vec3 n = size > 1e-6 ? d.slope / size : o.normal;
     const Obstacle here{x - d.z * n, n, o.radius};

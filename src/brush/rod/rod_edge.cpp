@@ -24,8 +24,8 @@ class PieceOverEdge {
   public:
     PieceOverEdge(const Frozen& frozen, int p, const HairPiece& piece, const Recycled<Vec3>& node)
         : law_(*frozen.law),
-          obstacle_(frozen.obstacles[p]),
-          crease_(frozen.crease[p]),
+          obstacle_(frozen.points.obstacles[p]),
+          crease_(frozen.points.crease[p]),
           piece_(piece),
           x(piece.at.at(node)),
           inwards(piece.at.inwards(node)),
@@ -66,8 +66,8 @@ inline LineDistance PieceOverEdge::line_at(double s) const {
 inline Shortened PieceOverEdge::at(double s) const {
     const LineDistance d = line_at(s);
     Shortened out{.s = s, .depth = piece_.radius - d.z, .distance = d};
-    out.push = normal_force(law_, piece_.weight, piece_.radius, out.depth, 0);
-    out.pull = adhesion(law_, piece_.weight, -out.depth);
+    out.push = normal_force(law_.normal, piece_.weight, piece_.radius, out.depth, 0);
+    out.pull = adhesion(law_.adhesion, piece_.weight, -out.depth);
     out.miss = s / piece_.compliance - out.force() * d.slope;
     return out;
 }
@@ -82,9 +82,9 @@ inline double PieceOverEdge::slope(const Shortened& at) const {
 // is at most that of the contact and of the film, and the contact grows no faster than hair goes along itself.
 inline double PieceOverEdge::surely_short(const Shortened& from) const {
     constexpr double kRounding = 1e-9;
-    const double along = glm::length(inwards), pull = law_.adhesion * piece_.weight;
+    const double along = glm::length(inwards), pull = law_.adhesion.strength * piece_.weight;
     const double spare = from.s / piece_.compliance - (from.push.force + pull) * along;
-    const double stiffest = (law_.stiffness + law_.core_stiffness) * piece_.weight;
+    const double stiffest = (law_.normal.stiffness + law_.normal.core_stiffness) * piece_.weight;
     return std::max(0.0, (1 - kRounding) * spare / (1 / piece_.compliance + stiffest * along * along));
 }
 
@@ -93,12 +93,12 @@ Shortened PieceOverEdge::stand() const {
     const Shortened whole = at(0);
     if (whole.push.force <= 0) return whole;
     constexpr int kSteps = 12;
-    const double step = 3 * law_.end_compliance / kSteps;
+    const double step = 3 * law_.normal.end_compliance / kSteps;
     Shortened high = at(kSteps * step);
     if (high.miss <= 0) return high;
     // A step brings hair no nearer to the surface than it is long: as far as neither contact nor film can begin, no
     // sign changes.
-    const double off = -high.depth - law_.adhesion_range - 1e-9;
+    const double off = -high.depth - law_.adhesion.range - 1e-9;
     const int clear = std::clamp(static_cast<int>(off / step), 0, kSteps - 1);
     if (clear > 0) high = at((kSteps - clear) * step);
     Shortened low = high;
@@ -192,8 +192,8 @@ class RigidPieces {
   public:
     RigidPieces(const Frozen& frozen, int p, bool derivatives, Evaluation& out)
         : law_(*frozen.law),
-          obstacle_(frozen.obstacles[p]),
-          crease_(frozen.crease[p]),
+          obstacle_(frozen.points.obstacles[p]),
+          crease_(frozen.points.crease[p]),
           point_(p),
           derivatives_(derivatives),
           out_(out) {}
@@ -204,8 +204,8 @@ class RigidPieces {
         const EdgeHeight over = edge_height(crease_.edge, x);
         const double own = glm::dot(x - obstacle_.origin, obstacle_.normal);
         const double depth = piece.radius - (own + crease_.share * (over.z - own));
-        const NormalForce push = normal_force(law_, piece.weight, piece.radius, depth, 0);
-        const NormalForce pull = adhesion(law_, piece.weight, -depth);
+        const NormalForce push = normal_force(law_.normal, piece.weight, piece.radius, depth, 0);
+        const NormalForce pull = adhesion(law_.adhesion, piece.weight, -depth);
         if (push.force == pull.force) return 0;
         const double energy = push.energy + pull.energy;
         if (!derivatives_) return energy;
@@ -247,17 +247,17 @@ class RigidPieces {
 }  // namespace
 
 bool is_clear_of_edge(const Frozen& frozen, int p, const Vec3& x) {
-    const Obstacle& o = frozen.obstacles[p];
-    const Crease& crease = frozen.crease[p];
+    const Obstacle& o = frozen.points.obstacles[p];
+    const Crease& crease = frozen.points.crease[p];
     const double own = glm::dot(x - o.origin, o.normal), z = own + crease.share * (edge_height(crease.edge, x).z - own);
-    const double length = frozen.rod->length[frozen.place[p].node] / frozen.law->points_per_segment;
-    return z - o.radius >= frozen.law->adhesion_range + length;
+    const double length = frozen.rod->length[frozen.points.place[p].node] / frozen.law->points_per_segment;
+    return z - o.radius >= frozen.law->adhesion.range + length;
 }
 
 double add_hair_at_edge(const Frozen& frozen, int p, bool derivatives, Evaluation& out) {
     double energy = 0;
     RigidPieces rigid(frozen, p, derivatives, out);
-    for (const HairPiece& piece : frozen.piece[p]) {
+    for (const HairPiece& piece : frozen.points.piece[p]) {
         if (piece.weight <= 0) continue;
         if (piece.compliance <= 0) {
             energy += rigid.add(piece);
@@ -279,7 +279,7 @@ double add_hair_at_edge(const Frozen& frozen, int p, bool derivatives, Evaluatio
 Obstacle mean_plane_at_edge(const Frozen& frozen, int p, const Recycled<Vec3>& node, const Obstacle& here) {
     double total = 0;
     Vec3 normal{0}, origin{0};
-    for (const HairPiece& piece : frozen.piece[p]) {
+    for (const HairPiece& piece : frozen.points.piece[p]) {
         if (piece.weight <= 0) continue;
         Vec3 x = piece.at.at(node);
         double force = 0;
@@ -289,9 +289,9 @@ Obstacle mean_plane_at_edge(const Frozen& frozen, int p, const Recycled<Vec3>& n
             x += st.s * hair.inwards;
             force = st.push.force;
         }
-        const Distance d = distance_of(frozen.obstacles[p], frozen.crease[p], frozen.law->edge, x);
+        const Distance d = distance_of(frozen.points.obstacles[p], frozen.points.crease[p], frozen.law->edge, x);
         if (piece.compliance <= 0)
-            force = normal_force(*frozen.law, piece.weight, piece.radius, piece.radius - d.z, 0).force;
+            force = normal_force(frozen.law->normal, piece.weight, piece.radius, piece.radius - d.z, 0).force;
         if (force <= 0) continue;
         total += force;
         normal += force * d.slope;

@@ -7,7 +7,7 @@
 namespace tuft::brush::rod {
 
 inline bool over_edge(const Frozen& frozen, int p) {
-    return frozen.crease[p].share > 0 && frozen.crease[p].convex && !frozen.law->hard;
+    return frozen.points.crease[p].share > 0 && frozen.points.crease[p].convex && !frozen.law->normal.hard;
 }
 
 /// Whether no piece of contact point p, which lies at x, can touch the edge or its wet film.

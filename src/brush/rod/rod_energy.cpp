@@ -236,7 +236,7 @@ namespace {
 
 /// Backward Euler: the joint resists its turn since the last solve.
 double add_damping(const Frozen& frozen, int j, JointForce& joint) {
-    const double k = frozen.law->damping * frozen.rod->stiffness[j];
+    const double k = frozen.law->joints.damping * frozen.rod->stiffness[j];
     if (k <= 0) return 0;
     const Vec2 turn = joint.bend - (*frozen.joint)[j].bend;
     joint.moment += k * turn;
@@ -276,7 +276,7 @@ double add_joints(const Frozen& frozen, const Shape& shape, Evaluation& out) {
 }
 
 double add_contacts(const Frozen& frozen, bool derivatives, Evaluation& out) {
-    if (frozen.obstacles.empty()) return 0;
+    if (frozen.points.obstacles.empty()) return 0;
     const int per = frozen.law->points_per_segment;
     double value = 0;
     for (int k = 0; k <= frozen.rod->segments(); ++k) {
@@ -287,7 +287,7 @@ double add_contacts(const Frozen& frozen, bool derivatives, Evaluation& out) {
             for (int p = range.begin; p < range.end; ++p) value += add_contact(frozen, p, derivatives, out);
         }
     }
-    for (std::size_t p = frozen.walls_from; p < frozen.obstacles.size(); ++p) {
+    for (std::size_t p = frozen.points.walls_from; p < frozen.points.obstacles.size(); ++p) {
         value += add_contact(frozen, static_cast<int>(p), derivatives, out);
     }
     return value;
@@ -306,7 +306,7 @@ void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out) {
     out.curvature.assign(n + 1, Sym3{});
     out.coupling.assign(n, Sym3{});
     out.across.assign(n, Sym3{});
-    out.normal.assign(frozen.obstacles.size(), 0.0);
+    out.normal.assign(frozen.points.obstacles.size(), 0.0);
     out.contact = 0;
     const double joints = add_joints(frozen, shape, out);
     out.slope[n] -= frozen.load.tip_force;

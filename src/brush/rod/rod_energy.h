@@ -118,28 +118,39 @@ struct PatchPoint {
     Vec2 anchor{0};     ///< along the hair and across, from the clamp
 };
 
+/// What places and stencils of contact points were computed for.
+struct PointGrid {
+    Recycled<double> length;  ///< [n] of the segments
+    int per_segment = 0;
+    bool round = false;  ///< see `rounded`
+};
+
+/// Contact points of a rod, root to tip, then one per wall. All arrays are of the points; those of the contact are
+/// empty without obstacles.
+struct ContactPoints {
+    Recycled<PointPlace> place;
+    Recycled<Stencil> stencil;
+    PointGrid placed;
+    std::size_t walls_from = 0;           ///< index of the first point of a wall
+    std::span<const Obstacle> obstacles;  ///< or empty
+    Recycled<Crease> crease;
+    Recycled<std::array<HairPiece, kPieces>> piece;  ///< of those over a convex crease
+    Recycled<double> weight;                         ///< tributary lengths
+    Recycled<Friction> friction;
+    Recycled<double> multiplier;  ///< hard contact
+    Recycled<double> compliance;  ///< end compliance: displacement per force
+    Recycled<PatchPoint> spot;    ///< of those on patches
+};
+
 /// Constants of one Newton solve.
 struct Frozen {
     const Rod* rod = nullptr;
     const Recycled<JointMemory>* joint = nullptr;
-    std::span<const Obstacle> obstacles;             ///< of the contact points, or empty
-    Recycled<PointPlace> place;                      ///< of the contact points
-    Recycled<Stencil> stencil;                       ///< of the contact points
-    Recycled<double> placed_length;                  ///< segment lengths for which place and stencil were computed,
-    int placed_per = 0;                              ///< points per segment,
-    bool placed_round = false;                       ///< and whether rounded
-    std::size_t walls_from = 0;                      ///< index of the first contact point of a wall
-    Recycled<Crease> crease;                         ///< of the contact points
-    Recycled<std::array<HairPiece, kPieces>> piece;  ///< of the contact points over a convex crease
-    Recycled<double> weight;                         ///< of the contact points, tributary lengths
     const Law* law = nullptr;
     Load load;
     Clamp clamp;
-    Recycled<Friction> friction;  ///< of the contact points
-    Recycled<double> multiplier;  ///< of the contact points
-    Recycled<double> compliance;  ///< of the contact points, end compliance: displacement per force
-    Recycled<Patch> patch;        ///< of the nodes, or none
-    Recycled<PatchPoint> spot;    ///< of the contact points on patches
+    ContactPoints points;
+    Recycled<Patch> patch;  ///< of the nodes, or none
 };
 
 /// Unit tangent t and unit normal s of every segment. The pair (s, t × s) is parallel-transported along the rod.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "brush/rod/rod.h"
+#include "brush/rod/law.h"
 
 /// \file
 /// Contact law of one point: normal force, adhesion and their potentials. Internal to the rod solver.
@@ -19,7 +19,7 @@ inline NormalForce ramp(double k, double x, double onset) {
 }
 
 /// Returns the normal force of a node that is `depth` below its plane.
-inline NormalForce normal_force(const Law& law, double weight, double radius, double depth, double multiplier) {
+inline NormalForce normal_force(const NormalLaw& law, double weight, double radius, double depth, double multiplier) {
     if (law.hard) {
         const double k = law.stiffness * weight, force = multiplier + k * depth;
         if (force <= 0) return {-multiplier * multiplier / (2 * k), 0, 0};
@@ -38,9 +38,9 @@ inline NormalForce normal_force(const Law& law, double weight, double radius, do
 }
 
 /// Returns the adhesion of the wet film at `gap` (negative: indented). Its potential is 0 at the end of its range.
-inline NormalForce adhesion(const Law& law, double weight, double gap) {
-    if (law.adhesion <= 0 || gap >= law.adhesion_range) return {};
-    const double pull = law.adhesion * weight, range = law.adhesion_range;
+inline NormalForce adhesion(const AdhesionLaw& law, double weight, double gap) {
+    if (law.strength <= 0 || gap >= law.range) return {};
+    const double pull = law.strength * weight, range = law.range;
     if (gap <= 0) return {pull * (gap - range / 3), pull, 0};
     const double u = 1 - gap / range;
     return {-pull * range / 3 * u * u * u, pull * u * u, -2 * pull * u / range};

@@ -46,7 +46,7 @@ struct RodSystem {
     Shape& shape;
     Workspace& ws;
 
-    double tolerance() const { return frozen.law->tolerance; }
+    double tolerance() const { return frozen.law->limits.tolerance; }
     double value() const { return ws.at.value; }
     std::span<const double> gradient() const { return ws.derivatives.gradient; }
     std::span<const double> step() const { return ws.step; }

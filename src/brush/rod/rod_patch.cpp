@@ -89,29 +89,31 @@ struct PatchSum {
 
 void compute_patches(Frozen& frozen) {
     const Law& law = *frozen.law;
+    ContactPoints& points = frozen.points;
     const int per = law.points_per_segment, n = frozen.rod->segments();
     frozen.patch.assign(static_cast<std::size_t>(n + 1), {});
-    frozen.spot.resize(frozen.obstacles.size());
-    for (int k = 0; k <= n && !law.hard && !frozen.obstacles.empty(); ++k) {
+    points.spot.resize(points.obstacles.size());
+    for (int k = 0; k <= n && !law.normal.hard && !points.obstacles.empty(); ++k) {
         const PointRange range = points_of(k, per, n);
         if (range.begin >= range.end) continue;
         Patch& patch = frozen.patch[k];
-        patch.normal = frozen.obstacles[range.begin].normal;
+        patch.normal = points.obstacles[range.begin].normal;
         patch.flat = true;
         double reach = -1e300;
         for (int p = range.begin; p < range.end; ++p) {
-            const Obstacle& o = frozen.obstacles[p];
+            const Obstacle& o = points.obstacles[p];
             patch.flat =
-                patch.flat && o.normal == patch.normal && frozen.crease[p].share <= 0 && frozen.compliance[p] <= 0;
+                patch.flat && o.normal == patch.normal && points.crease[p].share <= 0 && points.compliance[p] <= 0;
             if (!patch.flat) break;
-            frozen.spot[p].height = glm::dot(o.origin - frozen.clamp.position, patch.normal);
-            reach = std::max(reach, frozen.spot[p].height + o.radius + law.adhesion_range);
+            points.spot[p].height = glm::dot(o.origin - frozen.clamp.position, patch.normal);
+            reach = std::max(reach, points.spot[p].height + o.radius + law.adhesion.range);
         }
         patch.reach = reach;
     }
 }
 
 void turn_patches(Frozen& frozen) {
+    ContactPoints& points = frozen.points;
     const int per = frozen.law->points_per_segment, n = frozen.rod->segments();
     for (int k = 0; k <= n; ++k) {
         Patch& patch = frozen.patch[k];
@@ -119,7 +121,7 @@ void turn_patches(Frozen& frozen) {
         bool framed = false;
         const PointRange range = points_of(k, per, n);
         for (int p = range.begin; p < range.end; ++p) {
-            const Friction& f = frozen.friction[p];
+            const Friction& f = points.friction[p];
             if (f.cap <= 0 || f.stick <= 0) continue;
             if (!framed) {
                 patch.along = f.grain != Vec3{0} ? f.grain : make_frame(Vec3{0}, patch.normal).t;
@@ -129,7 +131,7 @@ void turn_patches(Frozen& frozen) {
                 framed = true;
             }
             const Vec3 anchor = f.anchor - frozen.clamp.position;
-            frozen.spot[p].anchor = {glm::dot(anchor, patch.along), glm::dot(anchor, patch.across)};
+            points.spot[p].anchor = {glm::dot(anchor, patch.along), glm::dot(anchor, patch.across)};
         }
     }
 }
@@ -137,8 +139,9 @@ void turn_patches(Frozen& frozen) {
 double add_patch(const Frozen& frozen, int k, bool derivatives, Evaluation& out) {
     const Law& law = *frozen.law;
     const Patch& patch = frozen.patch[k];
+    const ContactPoints& points = frozen.points;
     const PointRange range = points_of(k, law.points_per_segment, frozen.rod->segments());
-    const int first = frozen.stencil[range.begin].first, count = frozen.stencil[range.begin].count;
+    const int first = points.stencil[range.begin].first, count = points.stencil[range.begin].count;
     Place node[3];
     for (int i = 0; i < count; ++i) node[i] = place_in(patch, out.node[first + i] - frozen.clamp.position);
     if (count < 3) node[2] = node[1];
@@ -146,22 +149,23 @@ double add_patch(const Frozen& frozen, int k, bool derivatives, Evaluation& out)
     PatchSum sum;
     double energy = 0;
     for (int p = range.begin; p < range.end; ++p) {
-        const double* w = frozen.stencil[p].w;
-        const Obstacle& o = frozen.obstacles[p];
+        const double* w = points.stencil[p].w;
+        const Obstacle& o = points.obstacles[p];
         const double height = w[0] * node[0].height + w[1] * node[1].height + w[2] * node[2].height;
-        const double depth = o.radius + frozen.spot[p].height - height;
-        if (depth <= -law.adhesion_range) continue;
-        const double weight = frozen.weight[p];
-        const NormalForce push = normal_force(law, weight, o.radius, depth, 0), pull = adhesion(law, weight, -depth);
+        const double depth = o.radius + points.spot[p].height - height;
+        if (depth <= -law.adhesion.range) continue;
+        const double weight = points.weight[p];
+        const NormalForce push = normal_force(law.normal, weight, o.radius, depth, 0),
+                          pull = adhesion(law.adhesion, weight, -depth);
         PointPotential v;
         v.energy = push.energy + pull.energy;
         v.normal = pull.force - push.force;
         v.second.normal = push.stiffness + pull.stiffness;
         out.contact += v.energy;
-        const Friction& f = frozen.friction[p];
+        const Friction& f = points.friction[p];
         if (f.cap > 0 && f.stick > 0) {
             const Vec2 flat = w[0] * node[0].flat + w[1] * node[1].flat + w[2] * node[2].flat;
-            add_sliding(patch, f, flat - frozen.spot[p].anchor, v);
+            add_sliding(patch, f, flat - points.spot[p].anchor, v);
         }
         energy += v.energy;
         if (!derivatives) continue;

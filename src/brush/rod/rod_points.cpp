@@ -15,7 +15,7 @@ struct PointBuilder {
     const Law& law;
     std::span<const Obstacle> obstacles;
     const Recycled<Vec3>& node;
-    Frozen& frozen;
+    ContactPoints& points;
     Recycled<Obstacle>& fine;
 
     int n() const { return rod.segments(); }
@@ -68,7 +68,7 @@ struct PointBuilder {
         const int first = straight >= turned ? 0 : 1;
         towards(first, b.origin, b.normal);
         if (both) towards(1 - first, b.beyond_origin, b.beyond_normal);
-        frozen.crease[p] = {1, true, round_edge(w, law.edge)};
+        points.crease[p] = {1, true, round_edge(w, law.edge)};
         return true;
     }
 
@@ -101,7 +101,7 @@ struct PointBuilder {
         constexpr double kAlike = 0.985, kApart = 0.90;  // 10° and 26°, as over smooth surfaces
         const double share = smooth_step((kAlike - alike) / (kAlike - kApart));
         if (share <= 0) return;
-        Crease& c = frozen.crease[p];
+        Crease& c = points.crease[p];
         c.share = share;
         // Closest points that coincide are of an edge.
         c.convex = glm::dot(b.origin - a.origin, a.normal - b.normal) < 1e-9;
@@ -113,19 +113,19 @@ struct PointBuilder {
         const int per = law.points_per_segment;
         compute_places(per);
         if (obstacles.empty()) return;
-        fine.resize(frozen.place.size());
-        frozen.crease.resize(fine.size());
-        for (Crease& c : frozen.crease) c.share = 0;
-        frozen.weight.assign(fine.size(), 0);
+        fine.resize(points.place.size());
+        points.crease.resize(fine.size());
+        for (Crease& c : points.crease) c.share = 0;
+        points.weight.assign(fine.size(), 0);
         bool alike_before = true;  // inboard of the point
         for (std::size_t p = 0; p < fine.size(); ++p) {
-            const PointPlace& at = frozen.place[p];
+            const PointPlace& at = points.place[p];
             const Obstacle &from = obstacles[at.node], &to = obstacles[at.node + 1];
             const bool edge = from.at_edge() || to.at_edge(), alike = !edge && from.normal == to.normal;
             if (alike && (at.s > 0 || alike_before)) {
                 compute_plane(p, at, from, to, from.normal);
             } else if (edge) {
-                const Vec3 x = frozen.stencil[p].at(node);
+                const Vec3 x = points.stencil[p].at(node);
                 compute_point(p, at, within_reach(from, x), within_reach(to, x));
             } else {
                 compute_point(p, at, from, to);
@@ -133,30 +133,29 @@ struct PointBuilder {
             alike_before = alike;
             if (p + 1 < fine.size()) {
                 const double half = 0.5 * rod.length[at.node] / per;
-                frozen.weight[p] += half;
-                frozen.weight[p + 1] += half;
+                points.weight[p] += half;
+                points.weight[p + 1] += half;
             }
         }
     }
 
     void compute_places(int per) {
-        if (frozen.placed_length == rod.length && frozen.placed_per == per && frozen.placed_round == rounded(law)) {
-            frozen.place.resize(frozen.walls_from);
-            frozen.stencil.resize(frozen.walls_from);
+        const PointGrid& placed = points.placed;
+        if (placed.length == rod.length && placed.per_segment == per && placed.round == rounded(law)) {
+            points.place.resize(points.walls_from);
+            points.stencil.resize(points.walls_from);
             return;
         }
-        frozen.placed_length = rod.length;
-        frozen.placed_per = per;
-        frozen.placed_round = rounded(law);
-        frozen.place.clear();
-        frozen.walls_from = static_cast<std::size_t>(n()) * per + 1;
+        points.placed = {rod.length, per, rounded(law)};
+        points.place.clear();
+        points.walls_from = static_cast<std::size_t>(n()) * per + 1;
         for (int j = 0; j < n(); ++j) {
-            for (int t = 0; t < per; ++t) frozen.place.push_back({j, static_cast<double>(t) / per});
+            for (int t = 0; t < per; ++t) points.place.push_back({j, static_cast<double>(t) / per});
         }
-        frozen.place.push_back({n() - 1, 1.0});
-        frozen.stencil.clear();
-        for (const PointPlace& at : frozen.place)
-            frozen.stencil.push_back(stencil_at(rod, rounded(law), at.node, at.s));
+        points.place.push_back({n() - 1, 1.0});
+        points.stencil.clear();
+        for (const PointPlace& at : points.place)
+            points.stencil.push_back(stencil_at(rod, rounded(law), at.node, at.s));
     }
 
     void compute_point(std::size_t p, const PointPlace& at, const Obstacle& a, const Obstacle& b) {
@@ -175,31 +174,31 @@ struct PointBuilder {
     /// End compliance of each contact point: 1/k_e, k_e = 2 P s_e^-2 per length
     /// so that a straight end takes the buckling load P at s_e.
     void compute_compliance() {
-        frozen.compliance.assign(fine.size(), 0);
-        if (law.end_compliance <= 0 || law.hard || rod.buckling <= 0) return;
-        const double soft = law.end_compliance * law.end_compliance / (2 * rod.buckling);
+        points.compliance.assign(fine.size(), 0);
+        if (law.normal.end_compliance <= 0 || law.normal.hard || rod.buckling <= 0) return;
+        const double soft = law.normal.end_compliance * law.normal.end_compliance / (2 * rod.buckling);
         double from_tip = 0;
         for (std::size_t p = fine.size(); p-- > 1;) {
-            const double window = 1 - from_tip / (4 * law.end_compliance);
+            const double window = 1 - from_tip / (4 * law.normal.end_compliance);
             if (window <= 0) break;
-            frozen.compliance[p] = soft * window * window / frozen.weight[p];
-            from_tip += rod.length[frozen.place[p - 1].node] / law.points_per_segment;
+            points.compliance[p] = soft * window * window / points.weight[p];
+            from_tip += rod.length[points.place[p - 1].node] / law.points_per_segment;
         }
     }
 
     /// Pieces of the points that lie over a convex crease.
     void compute_pieces() {
-        if (law.hard) return;
-        frozen.piece.resize(fine.size());
+        if (law.normal.hard) return;
+        points.piece.resize(fine.size());
         for (std::size_t p = 0; p < fine.size(); ++p) {
-            if (frozen.crease[p].share > 0 && frozen.crease[p].convex) compute_pieces(static_cast<int>(p));
+            if (points.crease[p].share > 0 && points.crease[p].convex) compute_pieces(static_cast<int>(p));
         }
     }
 
     void compute_pieces(int p) {
         const int per = law.points_per_segment;
         for (int k = 0; k < kPieces; ++k) {
-            HairPiece& piece = frozen.piece[p][k];
+            HairPiece& piece = points.piece[p][k];
             const double offset = (k + 0.5) / kPieces - 0.5;
             const int first = offset < 0 ? p - 1 : p, other = offset < 0 ? p - 1 : p + 1;
             piece.weight = 0;
@@ -208,7 +207,7 @@ struct PointBuilder {
             piece.at = stencil_at(rod, rounded(law), j, (p + offset) / per - j);
             piece.weight = rod.length[j] / (per * kPieces);
             piece.radius = fine[p].radius + std::abs(offset) * (fine[other].radius - fine[p].radius);
-            piece.compliance = frozen.compliance[p] * frozen.weight[p] / piece.weight;
+            piece.compliance = points.compliance[p] * points.weight[p] / piece.weight;
         }
     }
 
@@ -216,26 +215,26 @@ struct PointBuilder {
     void add_edge(const Wall& w) {
         const std::size_t p = fine.size() - 1;
         const Obstacle near =
-            within_reach({w.origin, w.normal, w.radius, w.beyond_origin, w.beyond_normal}, frozen.stencil[p].at(node));
+            within_reach({w.origin, w.normal, w.radius, w.beyond_origin, w.beyond_normal}, points.stencil[p].at(node));
         std::tie(fine[p].origin, fine[p].normal) = std::tie(near.origin, near.normal);
         if (!near.at_edge()) return;
-        frozen.crease[p] = {
+        points.crease[p] = {
             1, true, round_edge({{near.origin, near.beyond_origin}, {near.normal, near.beyond_normal}}, law.edge)};
-        frozen.piece.resize(fine.size());
-        frozen.piece[p] = {};
-        frozen.piece[p][0] = {frozen.stencil[p], frozen.weight[p], w.radius, 0};
+        points.piece.resize(fine.size());
+        points.piece[p] = {};
+        points.piece[p][0] = {points.stencil[p], points.weight[p], w.radius, 0};
     }
 
     /// Points of their own on the nodes.
     void add_walls(std::span<const Wall> walls) {
-        if (fine.empty() || law.hard) return;
+        if (fine.empty() || law.normal.hard) return;
         for (const Wall& w : walls) {
             const PointPlace at = w.node < n() ? PointPlace{w.node, 0} : PointPlace{n() - 1, 1};
-            frozen.place.push_back(at);
-            frozen.stencil.push_back(stencil_at(rod, rounded(law), at.node, at.s));
-            frozen.crease.push_back({});
-            frozen.compliance.push_back(0);
-            frozen.weight.push_back(w.share * rod.weight[w.node]);
+            points.place.push_back(at);
+            points.stencil.push_back(stencil_at(rod, rounded(law), at.node, at.s));
+            points.crease.push_back({});
+            points.compliance.push_back(0);
+            points.weight.push_back(w.share * rod.weight[w.node]);
             constexpr double kNowhere = -1e6;  // lengths
             fine.push_back({w.origin, w.normal, w.share > 0 ? w.radius : kNowhere});
             if (w.share > 0 && law.edge > 0) add_edge(w);
@@ -278,7 +277,7 @@ Recycled<Vec3> curve_nodes(const Rod& rod, const Recycled<Vec3>& node) {
 void compute_points(std::span<const Obstacle> obstacles, const Recycled<Vec3>& node, Frozen& frozen,
                     Recycled<Obstacle>& fine, std::span<const Wall> walls) {
     fine.clear();
-    PointBuilder builder{*frozen.rod, *frozen.law, obstacles, node, frozen, fine};
+    PointBuilder builder{*frozen.rod, *frozen.law, obstacles, node, frozen.points, fine};
     builder.compute_points();
     builder.compute_compliance();
     builder.compute_pieces();

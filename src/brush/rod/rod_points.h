@@ -12,7 +12,7 @@ namespace tuft::brush::rod {
 
 /// Returns true when contact treats the hair as a curve: with points between the nodes and the soft law.
 inline bool rounded(const Law& law) {
-    return law.points_per_segment > 2 && !law.hard;
+    return law.points_per_segment > 2 && !law.normal.hard;
 }
 
 /// Returns the position at parameter s of segment j. With `round` it lies on the quadratic B-spline with the nodes

@@ -21,10 +21,10 @@ Probe probe_energy(const Rod& rod, const Memory& memory, const SolveInput& input
     Solver solver{rod, copy, input.obstacles, input.walls, input.law, buffers};
     solver.begin(input.load, memory.node);
     for (std::size_t i = 0; i < solver.fine.size() && i < memory.contact.size(); ++i) {
-        solver.normal[i] = memory.contact[i].force;
+        solver.lagged.normal[i] = memory.contact[i].force;
         if (memory.contact[i].force > 0) {
-            solver.anchor[i] = memory.contact[i].anchor;
-            solver.anchored[i] = 1;
+            solver.lagged.anchor[i] = memory.contact[i].anchor;
+            solver.lagged.anchored[i] = 1;
         }
     }
     solver.freeze_friction(copy.node, solver.shape.tangent);

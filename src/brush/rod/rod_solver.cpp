@@ -44,12 +44,12 @@ Hair hair_over(const Vec3& tangent, const Vec3& plane) {
 }
 
 /// Friction of a point at x for the next pass, from the normal force and hair known so far.
-Friction friction_of(const Law& law, const Hair& hair, double weight, double normal_force, const Vec3& anchor,
+Friction friction_of(const FrictionLaw& law, const Hair& hair, double weight, double normal_force, const Vec3& anchor,
                      const Vec3& x) {
     Friction f;
     f.anchor = anchor;
     f.stick = law.stick_stiffness * weight;
-    f.cap = law.friction * normal_force;
+    f.cap = law.coefficient * normal_force;
     f.normal = hair.plane;
     f.grain = hair.grain;
     f.along = 1 + (2 * law.grain - 1) * hair.lean;
@@ -75,7 +75,7 @@ void Solver::begin(const Load& load, const Recycled<Vec3>& before) {
     for (int j = 0; j < n(); ++j) {
         // Frames are transported anew along the rod, so that spin gathered in one solve is dropped.
         memory.joint[j].bend = bend_of(a, side, shape.tangent[j]);
-        recovered += recover_joint(rod, j, memory.joint[j], law.recovery);
+        recovered += recover_joint(rod, j, memory.joint[j], law.joints.recovery);
         a = shape.tangent[j];
         side = shape.side[j];
     }
@@ -85,15 +85,15 @@ void Solver::begin(const Load& load, const Recycled<Vec3>& before) {
     frozen.load = load;
     frozen.clamp = memory.clamp;
     compute_points(obstacles, memory.node, frozen, fine, walls);
-    frozen.obstacles = fine;
+    frozen.points.obstacles = fine;
     compute_patches(frozen);
     const std::size_t points = fine.size();
-    frozen.friction.resize(points);
-    for (Friction& f : frozen.friction) f.cap = 0;
-    frozen.multiplier.assign(points, 0);
-    normal.assign(points, 0);
-    anchor.assign(points, Vec3{0});
-    anchored.assign(points, 0);
+    frozen.points.friction.resize(points);
+    for (Friction& f : frozen.points.friction) f.cap = 0;
+    frozen.points.multiplier.assign(points, 0);
+    lagged.normal.assign(points, 0);
+    lagged.anchor.assign(points, Vec3{0});
+    lagged.anchored.assign(points, 0);
     const double part = stands() ? 0 : step_ratio();
     double carried = 0;
     for (const ContactMemory& c : memory.contact) carried += c.force;
@@ -102,17 +102,17 @@ void Solver::begin(const Load& load, const Recycled<Vec3>& before) {
         const ContactMemory& c = memory.contact[p];
         const Vec3 x = point(memory.node, p);
         if (c.touching) {
-            anchor[p] = transported_anchor(p, c, point(before, p));
-            anchored[p] = 1;
-            normal[p] = std::max(0.0, c.force + part * c.growth);
-            frozen.multiplier[p] = c.multiplier;
+            lagged.anchor[p] = transported_anchor(p, c, point(before, p));
+            lagged.anchored[p] = 1;
+            lagged.normal[p] = std::max(0.0, c.force + part * c.growth);
+            frozen.points.multiplier[p] = c.multiplier;
         } else if (const double z = distance(p, x).z - fine[p].radius; z < 0) {
             const Vec3 from = point(before, p);
-            anchor[p] = touching_point(distance(p, from).z - fine[p].radius, z, from, x);
-            anchored[p] = 1;
+            lagged.anchor[p] = touching_point(distance(p, from).z - fine[p].radius, z, from, x);
+            lagged.anchored[p] = 1;
             // Hair that touches for the first time sticks where it touched; without any
             // friction in the first pass it could slip to the wrong side of the hand.
-            if (carried == 0) normal[p] = kFirstTouch;
+            if (carried == 0) lagged.normal[p] = kFirstTouch;
         }
     }
 }
@@ -123,32 +123,34 @@ Vec3 Solver::transported_anchor(std::size_t p, const ContactMemory& c, const Vec
 }
 
 Distance Solver::distance(std::size_t p, const Vec3& x) const {
-    return distance_of(fine[p], frozen.crease[p], law.edge, x);
+    return distance_of(fine[p], frozen.points.crease[p], law.edge, x);
 }
 
 Vec3 Solver::normal_at(std::size_t p, const Recycled<Vec3>& x) const {
-    return frozen.crease[p].share <= 0 ? fine[p].normal : met_at(p, x).normal;
+    return frozen.points.crease[p].share <= 0 ? fine[p].normal : met_at(p, x).normal;
 }
 
 void Solver::freeze_friction(const Recycled<Vec3>& x, const Recycled<Vec3>& tangents) {
-    if (fine.empty() || law.friction <= 0) return;
+    if (fine.empty() || law.friction.coefficient <= 0) return;
     Hair hair;
     for (std::size_t p = 1; p < fine.size(); ++p) {
-        frozen.friction[p].cap = 0;
+        frozen.points.friction[p].cap = 0;
         // A wall that is no more has no weight and no node; its contact in the last solve is not carried on.
-        if (!anchored[p] || normal[p] <= 0 || frozen.weight[p] <= 0) continue;
+        if (!lagged.anchored[p] || lagged.normal[p] <= 0 || frozen.points.weight[p] <= 0) continue;
         const PointPlace& at = place(p);
         const Vec3& tangent = tangents[at.s > 0 ? at.node : at.node - 1];
         const Vec3 at_point = point(x, p), plane = normal_at(p, x);
         if (tangent != hair.tangent || plane != hair.plane) hair = hair_over(tangent, plane);
-        Friction f = friction_of(law, hair, frozen.weight[p], normal[p], anchor[p], at_point);
-        const bool tip = p + 1 == frozen.walls_from;
+        Friction f =
+            friction_of(law.friction, hair, frozen.points.weight[p], lagged.normal[p], lagged.anchor[p], at_point);
+        const bool tip = p + 1 == frozen.points.walls_from;
         const double c = std::min(0.0, glm::dot(tangent, plane));
-        if (law.end_friction < 1) f.cap *= tip ? std::max(law.end_friction, 1 - c * c) : 1 - c * c;
+        if (law.friction.end_share < 1) f.cap *= tip ? std::max(law.friction.end_share, 1 - c * c) : 1 - c * c;
         if (tip) {
-            f.pore_cap = law.pore_grip * normal[p] * (law.end_friction < 1 ? 1 - c * c : 1) * std::max(0.0, -c);
+            f.pore_cap = law.friction.pore_grip * lagged.normal[p] * (law.friction.end_share < 1 ? 1 - c * c : 1) *
+                         std::max(0.0, -c);
         }
-        frozen.friction[p] = f;
+        frozen.points.friction[p] = f;
     }
     turn_patches(frozen);
 }
@@ -166,8 +168,8 @@ bool Solver::propose_shape(const Guess* guess) {
         ws.ahead[j + 1] = ws.ahead[j] + rod.length[j] * tangent[j];
     }
     transport_sides(memory.clamp, tangent, ws.next.side);
-    for (std::size_t p = 1; guessed && p < std::min(normal.size(), guess->force.size()); ++p)
-        normal[p] = guess->force[p];
+    for (std::size_t p = 1; guessed && p < std::min(lagged.normal.size(), guess->force.size()); ++p)
+        lagged.normal[p] = guess->force[p];
     if (!guessed && stands())
         freeze_friction(memory.node, shape.tangent);
     else
@@ -202,62 +204,64 @@ double pass_tolerance(const ForceChange& forces) {
 ForceChange Solver::change_of_forces() const {
     ForceChange out;
     for (std::size_t p = 1; p < fine.size(); ++p) {
-        out.change += std::abs(ws.at.normal[p] - (law.hard ? frozen.multiplier[p] : normal[p]));
+        out.change += std::abs(ws.at.normal[p] - (law.normal.hard ? frozen.points.multiplier[p] : lagged.normal[p]));
         out.sum += ws.at.normal[p];
     }
     return out;
 }
 
 bool Solver::is_settled(const ForceChange& change) const {
-    return (law.friction <= 0 && !law.hard) || change.change <= law.pass_tolerance * (change.sum + kFaint);
+    return (law.friction.coefficient <= 0 && !law.normal.hard) ||
+           change.change <= law.limits.pass_tolerance * (change.sum + kFaint);
 }
 
 bool Solver::take_normal_forces(int pass) {
-    forces = change_of_forces();
-    forces_changed = false;
+    passes.forces = change_of_forces();
+    passes.forces_changed = false;
     for (std::size_t p = 1; p < fine.size(); ++p) {
         const double fresh = ws.at.normal[p];
-        forces_changed = forces_changed || (law.hard && frozen.multiplier[p] != fresh) || (fresh > 0 && !anchored[p]);
-        if (law.hard) frozen.multiplier[p] = fresh;
-        if (fresh > 0 && !anchored[p]) {
-            anchor[p] = point(ws.at.node, p);
-            anchored[p] = 1;
+        passes.forces_changed = passes.forces_changed || (law.normal.hard && frozen.points.multiplier[p] != fresh) ||
+                                (fresh > 0 && !lagged.anchored[p]);
+        if (law.normal.hard) frozen.points.multiplier[p] = fresh;
+        if (fresh > 0 && !lagged.anchored[p]) {
+            lagged.anchor[p] = point(ws.at.node, p);
+            lagged.anchored[p] = 1;
         }
     }
-    if (law.friction > 0 || law.hard) relax(pass);
-    return is_settled(forces);
+    if (law.friction.coefficient > 0 || law.normal.hard) relax(pass);
+    return is_settled(passes.forces);
 }
 
 void Solver::relax(int pass) {
     double along = 0, before = 0;
     for (std::size_t p = 1; p < fine.size(); ++p) {
-        const double miss = ws.at.normal[p] - normal[p];
+        const double miss = ws.at.normal[p] - lagged.normal[p];
         if (pass > 1) {
-            along += miss * buffers.last_miss[p];
-            before += buffers.last_miss[p] * buffers.last_miss[p];
+            along += miss * lagged.last_miss[p];
+            before += lagged.last_miss[p] * lagged.last_miss[p];
         }
     }
     // The last miss went in with `relaxation`: ratio = 1 - relaxation (1 - slope of the map).
     const double ratio = before > 0 ? along / before : 0;
-    if (pass > 1) relaxation = std::clamp(relaxation / std::max(1 - ratio, 0.2), 0.2, 1.5);
-    buffers.last_miss.assign(fine.size(), 0);
+    if (pass > 1) passes.relaxation = std::clamp(passes.relaxation / std::max(1 - ratio, 0.2), 0.2, 1.5);
+    lagged.last_miss.assign(fine.size(), 0);
     for (std::size_t p = 1; p < fine.size(); ++p) {
-        const double miss = ws.at.normal[p] - normal[p];
-        forces_changed = forces_changed || miss != 0;
-        buffers.last_miss[p] = miss;
-        normal[p] = std::max(0.0, normal[p] + relaxation * miss);
+        const double miss = ws.at.normal[p] - lagged.normal[p];
+        passes.forces_changed = passes.forces_changed || miss != 0;
+        lagged.last_miss[p] = miss;
+        lagged.normal[p] = std::max(0.0, lagged.normal[p] + passes.relaxation * miss);
     }
 }
 
 void Solver::expect_forces() {
-    forces.sum = std::accumulate(normal.begin(), normal.end(), 0.0);
-    forces.change = law.pass_tolerance * forces.sum;
+    passes.forces.sum = std::accumulate(lagged.normal.begin(), lagged.normal.end(), 0.0);
+    passes.forces.change = law.limits.pass_tolerance * passes.forces.sum;
 }
 
 NewtonResult Solver::minimise_pass(double tolerance, Result& done) {
-    const NewtonResult r =
-        newton(frozen, shape, ws, {law.max_iterations - done.iterations, stalls_left(law, stalls), tolerance});
-    stalls += r.stalls;
+    const NewtonResult r = newton(
+        frozen, shape, ws, {law.limits.max_iterations - done.iterations, stalls_left(law, passes.stalls), tolerance});
+    passes.stalls += r.stalls;
     done.iterations += r.iterations;
     work += {.iterations = r.iterations, .evaluations = r.evaluations, .values = r.values};
     return r;
@@ -268,15 +272,16 @@ Result Solver::run(const Guess* guess) {
     start(guess);
     expect_forces();
     for (out.passes = 1;; ++out.passes) {
-        const double rough = is_exact() ? 0 : pass_tolerance(forces);
+        const double rough = is_exact() ? 0 : pass_tolerance(passes.forces);
         NewtonResult r = minimise_pass(rough, out);
-        if (r.converged && rough > law.tolerance && forces_settled()) r.converged = minimise_pass(0, out).converged;
+        if (r.converged && rough > law.limits.tolerance && forces_settled())
+            r.converged = minimise_pass(0, out).converged;
         const bool settled = fine.empty() || take_normal_forces(out.passes);
         out.converged = r.converged && settled;
         // At a kink of Π that no step leaves, a pass with the same friction is the pass before again.
-        const bool stuck = out.passes > 1 && !r.converged && !r.moved && !forces_changed;
-        const bool spent = out.iterations >= law.max_iterations || stalls_left(law, stalls) <= 0;
-        if (out.converged || stuck || spent || out.passes >= law.max_passes) break;
+        const bool stuck = out.passes > 1 && !r.converged && !r.moved && !passes.forces_changed;
+        const bool spent = out.iterations >= law.limits.max_iterations || stalls_left(law, passes.stalls) <= 0;
+        if (out.converged || stuck || spent || out.passes >= law.limits.max_passes) break;
         ws.ahead = ws.at.node;
         freeze_friction(ws.ahead, shape.tangent);
         evaluate(frozen, shape, ws.at);
@@ -296,13 +301,13 @@ void Solver::finish(Result& out) {
     out.normal_force.assign(n() + 1, 0);
     out.contact_force.assign(n() + 1, Vec3{0});
     out.slip.assign(n() + 1, Vec3{0});
-    if (fine.size() > frozen.walls_from) out.wall_force.assign(n() + 1, Vec3{0});
+    if (fine.size() > frozen.points.walls_from) out.wall_force.assign(n() + 1, Vec3{0});
     out.contact_energy = at.contact;
     buffers.friction_sum.assign(n() + 1, 0);
     for (int j = 0; j < n(); ++j) {
         out.moment[j] = glm::length(at.joint[j].moment + end_moment(frozen));
         const Vec2 turn = at.joint[j].bend - memory.joint[j].bend;
-        out.dissipation += law.damping * rod.stiffness[j] * glm::dot(turn, turn);
+        out.dissipation += law.joints.damping * rod.stiffness[j] * glm::dot(turn, turn);
         out.dissipation += commit_joint(rod, j, memory.joint[j], at.joint[j].bend);
         out.bend_energy += stored_energy(rod, j, memory.joint[j], at.joint[j].bend);
     }
@@ -317,7 +322,7 @@ void Solver::finish(Result& out) {
     for (std::size_t p = 0; p < memory.contact.size(); ++p) finish_contact(p, out);
     for (int i = 0; i <= n(); ++i) out.slip[i] /= std::max(buffers.friction_sum[i], 1e-300);
     out.met.reserve(memory.node.size());
-    for (std::size_t p = 0; p < std::min(fine.size(), frozen.walls_from); p += law.points_per_segment)
+    for (std::size_t p = 0; p < std::min(fine.size(), frozen.points.walls_from); p += law.points_per_segment)
         out.met.push_back(met_at(p, at.node));
     const Mat3 back = glm::transpose(clamp_frame(memory.clamp));
     memory.turn.resize(shape.tangent.size());
@@ -336,12 +341,12 @@ void Solver::finish_contact(std::size_t p, Result& out) {
         c = {};
         return;
     }
-    const Stencil& at = frozen.stencil[p];
+    const Stencil& at = frozen.points.stencil[p];
     // Half of it taken from before, so that what a pass leaves is not carried on at twice its size.
     c.growth = c.force > 0 ? 0.5 * (c.growth + ws.at.normal[p] - c.force) : 0;
     c.force = ws.at.normal[p];
-    c.multiplier = law.hard ? c.force : 0;
-    const bool own = p < frozen.walls_from;
+    c.multiplier = law.normal.hard ? c.force : 0;
+    const bool own = p < frozen.points.walls_from;
     for (int k = 0; k < at.count; ++k) {
         if (own)
             out.normal_force[at.first + k] += at.w[k] * c.force;
@@ -349,10 +354,10 @@ void Solver::finish_contact(std::size_t p, Result& out) {
             out.wall_force[at.first + k] += at.w[k] * c.force * fine[p].normal;
     }
     const Vec3 x = point(ws.at.node, p);
-    const Friction& f = frozen.friction[p];
+    const Friction& f = frozen.points.friction[p];
     const bool sticks = f.cap > 0 && f.stick > 0;
     c.normal = sticks ? f.normal : normal_at(p, ws.at.node);
-    Vec3 d = anchored[p] && law.friction > 0 ? x - anchor[p] : Vec3{0};
+    Vec3 d = lagged.anchored[p] && law.friction.coefficient > 0 ? x - lagged.anchor[p] : Vec3{0};
     d -= glm::dot(d, c.normal) * c.normal;
     c.anchor = x - d;
     if (!sticks) return;

@@ -21,11 +21,19 @@ inline constexpr int kMostStalls = 8;
 inline constexpr int kPassStalls = 3;  ///< of one pass: with friction frozen anew the jump may be elsewhere
 /// Returns how many searches a pass may spend so, after `stalls` of the solve.
 inline int stalls_left(const Law& law, int stalls) {
-    return law.edge > 0 ? std::min(kPassStalls, kMostStalls - stalls) : law.max_iterations;
+    return law.edge > 0 ? std::min(kPassStalls, kMostStalls - stalls) : law.limits.max_iterations;
 }
 
 /// Returns how far a clamp went, turns counted at one length.
 double clamp_distance(const Clamp& a, const Clamp& b);
+
+/// Normal forces and anchors from which the friction of a pass is frozen, of the contact points.
+struct LaggedContact {
+    Recycled<double> normal;  ///< N̂
+    Recycled<Vec3> anchor;
+    Recycled<char> anchored;
+    Recycled<double> last_miss;  ///< of N̂ in the pass before
+};
 
 /// Buffers of one thread, reused so that a warm solve allocates little.
 struct Buffers {
@@ -33,10 +41,7 @@ struct Buffers {
     Recycled<Obstacle> fine;  ///< of the contact points
     Frozen frozen;
     Shape shape;
-    Recycled<double> normal;  ///< lagged N̂
-    Recycled<Vec3> anchor;
-    Recycled<char> anchored;
-    Recycled<double> last_miss;     ///< of N̂ in the pass before
+    LaggedContact lagged;
     Recycled<double> friction_sum;  ///< [n+1] most friction of the points beside each node
     Workspace newton;
 };
@@ -50,6 +55,14 @@ struct ForceChange {
 /// than its friction.
 double pass_tolerance(const ForceChange& forces);
 
+/// Course of the friction passes of one solve.
+struct PassState {
+    double relaxation = 1;        ///< of N̂ towards the normal forces of a pass
+    bool forces_changed = false;  ///< the last `take_normal_forces` changed what friction is frozen from
+    ForceChange forces;           ///< of the pass before; of the first one, what it is expected to change
+    int stalls = 0;
+};
+
 /// One solve: friction passes around Newton, then the memory moves on.
 struct Solver {
     const Rod& rod;
@@ -62,27 +75,21 @@ struct Solver {
     Recycled<Obstacle>& fine = buffers.fine;
     Frozen& frozen = buffers.frozen;
     Shape& shape = buffers.shape;
-    Recycled<double>& normal = buffers.normal;
-    Recycled<Vec3>& anchor = buffers.anchor;
-    Recycled<char>& anchored = buffers.anchored;
+    LaggedContact& lagged = buffers.lagged;
     Workspace& ws = buffers.newton;
-    double relaxation = 1;
     double recovered = 0;  ///< energy lost by the set going back
-    /// The last `take_normal_forces` changed what friction is frozen from.
-    bool forces_changed = false;
-    ForceChange forces;  ///< of the pass before; of the first one, what it is expected to change
-    int stalls = 0;
+    PassState passes;
     SolverWork work;
 
     int n() const { return rod.segments(); }
-    bool touches() const { return forces.sum > 0; }
+    bool touches() const { return passes.forces.sum > 0; }
 
     void begin(const Load& load, const Recycled<Vec3>& before);
     /// Returns the anchor of a point that stuck at `last`. Its stretch along the surface is transported with the
     /// surface's normal, so that neither a rounded edge nor a change of planes pulls at it.
     Vec3 transported_anchor(std::size_t p, const ContactMemory& c, const Vec3& last) const;
-    const PointPlace& place(std::size_t p) const { return frozen.place[p]; }
-    Vec3 point(const Recycled<Vec3>& x, std::size_t p) const { return frozen.stencil[p].at(x); }
+    const PointPlace& place(std::size_t p) const { return frozen.points.place[p]; }
+    Vec3 point(const Recycled<Vec3>& x, std::size_t p) const { return frozen.points.stencil[p].at(x); }
     Distance distance(std::size_t p, const Vec3& x) const;
     /// The plane that a contact point meets, and its unit normal.
     Obstacle met_at(std::size_t p, const Recycled<Vec3>& x) const { return met_by(frozen, static_cast<int>(p), x); }
@@ -102,7 +109,7 @@ struct Solver {
     /// passes.
     void start(const Guess* guess);
     /// Whether its passes must be exact: hair that stands under a load may buckle, which grows from what is left.
-    bool is_exact() const { return law.hard || (touches() && stands()); }
+    bool is_exact() const { return law.normal.hard || (touches() && stands()); }
     ForceChange change_of_forces() const;
     bool is_settled(const ForceChange& forces) const;
     /// Whether the normal forces of the pass are those that its friction is frozen from.

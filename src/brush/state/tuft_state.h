@@ -21,6 +21,9 @@ struct Pose {
     Vec3 axis() const { return rotation * Vec3{0, 0, -1}; }
 };
 
+/// Returns the pose at t in [0, 1] from `a` to `b`: position and time linearly, rotation along the shorter arc.
+Pose interpolate(const Pose& a, const Pose& b, double t);
+
 /// A cross-section of the tuft: an ellipse round a spine node P_i.
 /// Outline: centre + a cos ω e + b sin ω m, m = e × tangent.
 struct Section {
@@ -99,8 +102,7 @@ struct TuftState {
     double volume_lost = 0;  ///< m³, by which foam is smaller than at rest
     bool touching = false;
     bool converged = true;  ///< false: the solver stopped at its limit with its best state
-    int iterations = 0;
-    SolverWork work;  ///< of all parts of the motion to this state
+    SolverWork work;        ///< of all parts of the motion to this state
 };
 
 /// Contact plane of the tuft, or of one node: points p with dot(p − origin, normal) < 0 are inside the object. Next

@@ -17,13 +17,14 @@ constexpr double kGround = 0.436, kSteep = 0.8;  // sines of 26° and 53° betwe
 Recycled<rod::Wall> flank_walls(const Preset& p, const Spine& spine, const Quat& turn,
                                 std::span<const ContactPlane> walls, double wetness) {
     Recycled<rod::Wall> out;
-    if (walls.empty() || spine.flank.size() != walls.size() || spine.side.size() != walls.size()) return out;
+    if (walls.empty() || spine.sides.flank.size() != walls.size() || spine.sides.position.size() != walls.size())
+        return out;
     out.resize(walls.size());
     const int n = spine.rod.segments();
     const double soft = side_stiffness(wetness);
     for (std::size_t k = 0; k < walls.size(); ++k) {
         const int node = n - static_cast<int>(k / 2);
-        const Vec3 across = spine.side[k / 2 * 2] - spine.side[k / 2 * 2 + 1];
+        const Vec3 across = spine.sides.position[k / 2 * 2] - spine.sides.position[k / 2 * 2 + 1];
         const double width = glm::length(across);
         if (node == 0 || !(width > 0)) continue;
         const ContactPlane& wall = walls[k];
@@ -32,7 +33,7 @@ Recycled<rod::Wall> flank_walls(const Preset& p, const Spine& spine, const Quat&
         const double share = smooth_step((nearing - kGround) / (kSteep - kGround));
         if (share <= 0) continue;
         const double along = glm::dot(spine.memory.tangent[node - 1], wall.normal);
-        const double a = spine.flank[k], r = spine.rest_radius[node], b = r * r / a;
+        const double a = spine.sides.flank[k], r = spine.rest.radius[node], b = r * r / a;
         const double h =
             std::sqrt(a * a * nearing * nearing + b * b * std::max(0.0, 1 - nearing * nearing - along * along));
         out[k] = {node, wall.origin / p.length, wall.normal, h / p.length, soft * share};

@@ -84,7 +84,7 @@ std::vector<LatticeFrame> frames_of(const Spine& spine, std::span<const Section>
         x = parallel_transport(x, tangent, s.tangent);
         y = parallel_transport(y, tangent, s.tangent);
         tangent = s.tangent;
-        const Vec2 rest = spine.rest_section.empty() ? Vec2{spine.rest_radius[i]} : Vec2(spine.rest_section[i]);
+        const Vec2 rest = spine.rest.section.empty() ? Vec2{spine.rest.radius[i]} : Vec2(spine.rest.section[i]);
         // Half-widths of the resting section along e and m; its area is kept.
         const double along = std::hypot(rest.x * glm::dot(s.e, x), rest.y * glm::dot(s.e, y));
         const double across = along > 0 ? rest.x * rest.y / along : 0;
@@ -112,7 +112,7 @@ LatticeInput lattice_input(const Tuft& tuft, const TuftState& state) {
     const CarriedShape& shape = *tuft.carried;
     LatticeInput in{.at = shape.at, .spine_x = {}, .frames = {}, .lo = shape.lo, .hi = shape.hi};
     for (std::size_t k = 0; k < tuft.spines.size(); ++k) {
-        in.spine_x.push_back(tuft.spines[k].root.x);
+        in.spine_x.push_back(tuft.spines[k].rest.root.x);
         in.frames.push_back(frames_of(tuft.spines[k], state.branches[k].sections, tuft.pose));
     }
     return in;

@@ -19,8 +19,8 @@ constexpr double kEndFriction = 0.2;  ///< of the fold of hair ends that carries
 constexpr int kContactPoints = 6;     ///< per segment: a patch then grows smoothly with depth
 
 void set_time(const Preset& p, double dt, rod::Law& law) {
-    law.damping = dt > 0 ? p.damping / dt : 0;
-    law.recovery = p.recovery > 0 ? dt / p.recovery : 0;
+    law.joints.damping = dt > 0 ? p.damping / dt : 0;
+    law.joints.recovery = p.recovery > 0 ? dt / p.recovery : 0;
 }
 
 }  // namespace
@@ -29,24 +29,24 @@ rod::Law law_of(const Preset& p, double wetness, double share, double dt) {
     const double unit = p.stiffness / std::pow(p.length, 4);
     rod::Law law;
     law.points_per_segment = kContactPoints;
-    law.stiffness = p.transverse_stiffness / unit / share;
-    law.core_stiffness = p.core_stiffness * law.stiffness;
-    law.core_start = p.core_start;
-    law.onset = kOnset / p.length;
-    law.end_friction = kEndFriction;
+    law.normal.stiffness = p.transverse_stiffness / unit / share;
+    law.normal.core_stiffness = p.core_stiffness * law.normal.stiffness;
+    law.normal.core_start = p.core_start;
+    law.normal.onset = kOnset / p.length;
+    law.friction.end_share = kEndFriction;
     law.edge = kEdgeRounding / p.length;
-    law.end_compliance = p.end_compliance / p.length;
+    law.normal.end_compliance = p.end_compliance / p.length;
     set_time(p, dt, law);
-    law.adhesion = wetness * p.adhesion / (unit * p.length) / share;
-    law.adhesion_range = p.adhesion_range / p.length;
-    law.friction = p.friction_dry + (p.friction_wet - p.friction_dry) * wetness;
-    law.grain = p.grain;
-    law.with_hair = p.with_hair;
-    law.pore_grip = p.pore_grip;
-    law.stick_stiffness = p.stick * law.stiffness;
-    law.tolerance = 1e-6;
-    law.max_iterations = 60;
-    law.max_passes = 8;
+    law.adhesion.strength = wetness * p.adhesion / (unit * p.length) / share;
+    law.adhesion.range = p.adhesion_range / p.length;
+    law.friction.coefficient = p.friction_dry + (p.friction_wet - p.friction_dry) * wetness;
+    law.friction.grain = p.grain;
+    law.friction.with_hair = p.with_hair;
+    law.friction.pore_grip = p.pore_grip;
+    law.friction.stick_stiffness = p.stick * law.normal.stiffness;
+    law.limits.tolerance = 1e-6;
+    law.limits.max_iterations = 60;
+    law.limits.max_passes = 8;
     return law;
 }
 
@@ -74,7 +74,7 @@ void break_symmetry(const Preset& p, Spine& spine, const Pose& from, const Pose&
     }
     const ContactPlane& at_tip = planes.front();
     const double along = glm::dot(to.axis(), at_tip.normal);
-    const double under = spine.rest_radius.back() - glm::dot(upright.tip - at_tip.origin, at_tip.normal);
+    const double under = spine.rest.radius.back() - glm::dot(upright.tip - at_tip.origin, at_tip.normal);
     if (along > -0.9999 || under < 0) return;
     Vec3 aside = from.position - to.position;
     aside -= glm::dot(aside, to.axis()) * to.axis();
@@ -99,13 +99,13 @@ namespace {
 
 /// Planes of a spine's nodes (tip first) as obstacles of its rod (root first).
 Recycled<rod::Obstacle> obstacles_of(const Preset& p, const Spine& spine, std::span<const ContactPlane> planes) {
-    const std::size_t count = spine.rest_radius.size();
+    const std::size_t count = spine.rest.radius.size();
     Recycled<rod::Obstacle> out;
     if (planes.empty()) return out;
     out.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         const ContactPlane& plane = planes.size() == 1 ? planes[0] : planes[count - 1 - i];
-        out[i] = {plane.origin / p.length, plane.normal, spine.rest_radius[i] / p.length,
+        out[i] = {plane.origin / p.length, plane.normal, spine.rest.radius[i] / p.length,
                   plane.beyond_origin / p.length, plane.beyond_normal};
     }
     return out;
@@ -130,7 +130,7 @@ Spine make_spine(const Preset& p, const rod::Rod& rod, const rod::Clamp& clamp, 
     spine.memory = rod::make_memory(rod, clamp);
     double s = xi0;
     for (int i = 0; i <= rod.segments(); ++i) {
-        spine.rest_radius.push_back(rest_radius(p, s) / std::sqrt(share));
+        spine.rest.radius.push_back(rest_radius(p, s) / std::sqrt(share));
         if (i < rod.segments()) s += rod.length[i];
     }
     return spine;
@@ -141,14 +141,14 @@ SolvedSpine finish_spine(const SpineStep& step, Spine& spine, SolvedRod rod, con
     const std::span<const rod::Obstacle> met = out.result.met.empty() ? rod.obstacles : out.result.met;
     SectionOutput sections = make_sections({step.preset, spine, out.result, met, rod.node, step.rotation, step.wetness,
                                             step.share, step.walls, neighbours, rod.along, rod.broad});
-    spine.side = std::move(sections.sides);
-    spine.flank = std::move(sections.flank);
-    spine.wide = sections.wide;
-    spine.aside = std::move(sections.aside);
-    spine.slips = std::move(sections.slips);
+    spine.sides.position = std::move(sections.sides);
+    spine.sides.flank = std::move(sections.flank);
+    spine.sides.direction = sections.wide;
+    spine.sides.shift = std::move(sections.aside);
+    spine.sides.slips = std::move(sections.slips);
     out.spread_energy = sections.spread_energy;
-    out.aside_gain = sections.aside_energy - spine.aside_energy;
-    spine.aside_energy = sections.aside_energy;
+    out.aside_gain = sections.aside_energy - spine.sides.energy;
+    spine.sides.energy = sections.aside_energy;
     out.branch.sections = std::move(sections.sections);
     return out;
 }
@@ -180,10 +180,6 @@ constexpr int kPassesOnTheWay = 2;  ///< over the normal forces; the last part p
 
 }  // namespace
 
-Pose between(const Pose& a, const Pose& b, double t) {
-    return {glm::mix(a.position, b.position, t), glm::slerp(a.rotation, b.rotation, t), a.time + t * (b.time - a.time)};
-}
-
 int count_substeps(const Preset& p, const Pose& from, const Pose& to, double bend) {
     const double turned = 2 * std::acos(std::min(1.0, std::abs(glm::dot(from.rotation, to.rotation))));
     const double moved = glm::length(to.position - from.position) / p.length + turned;
@@ -203,12 +199,12 @@ StraightHair upright_at(const Preset& p, const Pose& pose) {
 Pose follow_parts(const SpineStep& step, Spine& spine, const Pose& from, const Pose& to, int parts, PathWork& passed) {
     const Preset& p = step.preset;
     rod::Law law = law_of(p, step.wetness, 1, 0);
-    law.max_iterations = std::max(30, law.max_iterations / parts);
-    law.max_passes = kPassesOnTheWay;
+    law.limits.max_iterations = std::max(30, law.limits.max_iterations / parts);
+    law.limits.max_passes = kPassesOnTheWay;
     set_time(p, step.dt, law);
     Pose last = from;
     for (int k = 1; k < parts; ++k) {
-        const Pose pose = between(from, to, static_cast<double>(k) / parts);
+        const Pose pose = interpolate(from, to, static_cast<double>(k) / parts);
         turn_with_spread(p, spine, last, pose, step.planes);
         break_symmetry(p, spine, last, pose, step.planes, upright_at(p, pose));
         const rod::Result r = rod::solve(spine.rod, spine.memory, clamp_of(p, pose),
@@ -336,7 +332,7 @@ SolvedSpine bend_by_table(const SpineStep& step, const QueryTable& table, Spine&
     if (moment > 0) {
         const double unit = p.stiffness / p.length;
         for (std::size_t j = 0; j < n; ++j) r.moment[j] = row.moments[n - j] / unit;
-        add_reaction(spine, obstacles, moment / unit, law.friction, tip_before, r);
+        add_reaction(spine, obstacles, moment / unit, law.friction.coefficient, tip_before, r);
     }
     return finish_spine(step, spine, {std::move(r), m.node, obstacles});
 }

@@ -39,8 +39,6 @@ rod::Law law_of(const Preset& preset, double wetness, double share, double dt);
 
 /// Number of parts in which a tuft whose tip is bent by `bend` radians follows its ferrule from one pose to another.
 int count_substeps(const Preset& preset, const Pose& from, const Pose& to, double bend);
-/// Pose at t in [0, 1] of the path.
-Pose between(const Pose& from, const Pose& to, double t);
 
 /// Where the tip of straight hair would be, and where hair falls that nothing else turns aside.
 struct StraightHair {

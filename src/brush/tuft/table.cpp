@@ -25,8 +25,8 @@ struct Loaded {
 
 Loaded load_to(const rod::Rod& fine, const rod::Memory& from, double load) {
     rod::Law law;
-    law.tolerance = 1e-10;
-    law.max_iterations = 200;
+    law.limits.tolerance = 1e-10;
+    law.limits.max_iterations = 200;
     Loaded out{from, {}};
     out.result = rod::solve(fine, out.memory, kHolder, {.law = law, .load = {{0, load, 0}}});
     return out;

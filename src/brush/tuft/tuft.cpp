@@ -18,9 +18,9 @@ constexpr double kDryPlastic = 0.3;  ///< plastic share of dry hair over that of
 
 std::size_t expected_planes(const Tuft& tuft) {
     std::size_t count = 0;
-    for (const Spine& spine : tuft.spines) count += spine.rest_radius.size();
+    for (const Spine& spine : tuft.spines) count += spine.rest.radius.size();
     if (tuft.split) {
-        for (const Spine& sub_spine : tuft.sub_spines) count += sub_spine.rest_radius.size();
+        for (const Spine& sub_spine : tuft.sub_spines) count += sub_spine.rest.radius.size();
     }
     return count;
 }
@@ -135,7 +135,7 @@ Recycled<Vec3> predicted_sides(const Tuft& tuft, const Pose& pose) {
     Recycled<Vec3> out;
     if (!tuft.posed) return out;
     for (const Spine& spine : tuft.spines)
-        for (const Vec3& s : spine.side) out.push_back(pose.position + pose.rotation * (spine.root + s));
+        for (const Vec3& s : spine.sides.position) out.push_back(pose.position + pose.rotation * (spine.rest.root + s));
     return out;
 }
 
@@ -156,11 +156,10 @@ void add_spine(const Preset& p, const Spine& spine, SolvedSpine solved, const Ve
     state.touching = state.normal_force > 0;
     state.energy.bend += r.bend_energy * newton_metre;
     state.energy.contact += r.contact_energy * newton_metre;
-    state.energy.aside += spine.aside_energy;
+    state.energy.aside += spine.sides.energy;
     state.energy.spread += solved.spread_energy;
     state.energy.lost += r.dissipation * newton_metre - solved.aside_gain;
     state.converged = state.converged && r.converged;
-    state.iterations = std::max(state.iterations, r.iterations);
     state.work += r.work;
     state.branches.push_back(std::move(solved.branch));
 }
@@ -183,7 +182,7 @@ void note_guess(const Tuft& tuft, StepStart& start) {
 TuftState bend_trunk(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt,
                      std::span<const ContactPlane> walls, StepStart* start) {
     const Preset& p = tuft.preset;
-    const std::size_t own = tuft.trunk().rest_radius.size();
+    const std::size_t own = tuft.trunk().rest.radius.size();
     SpineStep step{.preset = p,
                    .clamp = clamp_of(p, pose),
                    .rotation = pose.rotation,
@@ -219,11 +218,11 @@ TuftState bend_wide(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> 
     for (std::size_t k = 0; k < tuft.spines.size(); ++k) {
         Spine& spine = tuft.spines[k];
         lost -= solved.spines[k].result.dissipation;
-        solved.spines[k].branch.ink_share = spine.share;
-        solved.spines[k].branch.strip = spine.strip;
-        solved.spines[k].branch.rest_length = spine.rest_length;
-        solved.spines[k].branch.edge_short = spine.edge_short;
-        add_spine(p, spine, std::move(solved.spines[k]), pose.rotation * spine.root, state);
+        solved.spines[k].branch.ink_share = spine.rest.share;
+        solved.spines[k].branch.strip = spine.rest.strip;
+        solved.spines[k].branch.rest_length = spine.rest.length;
+        solved.spines[k].branch.edge_short = spine.rest.edge_short;
+        add_spine(p, spine, std::move(solved.spines[k]), pose.rotation * spine.rest.root, state);
     }
     // What hair lost on the way to the last part of this step, and between the spines.
     state.energy.lost += lost * p.stiffness / p.length;
@@ -236,7 +235,7 @@ TuftState bend_wide(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> 
     for (const Beside& beside : tuft.beside) {
         // Beyond the end of the shorter one its tip says whether the skin goes on.
         const Recycled<double>& gap = beside.gap;
-        Recycled<double> width(tuft.spines[beside.first].rest_radius.size());
+        Recycled<double> width(tuft.spines[beside.first].rest.radius.size());
         for (std::size_t i = 0; i < width.size(); ++i)
             width[width.size() - 1 - i] = gap[std::min(i, gap.size() - 1)] / shared - bridged;
         state.openings.push_back({beside.first, beside.second, std::move(width)});
@@ -255,7 +254,7 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
                             planes.size(), expected));
     }
     std::size_t sides = 0;
-    for (const Spine& spine : tuft.spines) sides += 2 * spine.rest_radius.size();
+    for (const Spine& spine : tuft.spines) sides += 2 * spine.rest.radius.size();
     if (!walls.empty() && walls.size() != sides && walls.size() != sides + sides / 2) {
         throw Error(Message("brush: {} walls for {} side nodes", walls.size(), sides));
     }
@@ -307,11 +306,11 @@ void reset(Tuft& tuft) {
 void reshape(Tuft& tuft) {
     for (Spine& spine : tuft.spines) {
         const rod::Clamp clamp = spine.memory.clamp;
-        spine.side.clear();
-        spine.flank.clear();
-        spine.aside.clear();
-        spine.slips.clear();
-        spine.aside_energy = 0;
+        spine.sides.position.clear();
+        spine.sides.flank.clear();
+        spine.sides.shift.clear();
+        spine.sides.slips.clear();
+        spine.sides.energy = 0;
         spine.memory = rod::make_memory(spine.rod, clamp);
         spine.one_sided = Vec2{0};
     }

@@ -30,31 +30,40 @@ namespace tuft::brush {
 /// 1/ω of the first bending of a wet tuft, L²/3.52 √(ρ π R²/B0): 2.5 ms for wolf-medium, 3.5 mixed, 5.2 goat.
 inline constexpr double kDeviceForceTime = 4e-3;
 
+/// A spine as it stands in the ferrule: constant, but for that of a sub-spine, which is made anew with each split.
+struct SpineRest {
+    Recycled<double> radius;  ///< [n+1] m; √(a b) where the section is no circle
+    /// [n+1] m, half-widths along the ferrule's broad side and across it; empty: a circle of `radius`.
+    Recycled<Vec2> section;
+    Recycled<Vec2> strip;   ///< corners of its part of the mouth, see ferrule.h; empty: a disc
+    double length = 1;      ///< over the tuft's
+    double edge_short = 0;  ///< m, see FerruleSpine
+    Vec3 root{0};           ///< m, ferrule frame
+    double lean = 0;        ///< rad, of the clamp towards +x of the ferrule
+    double share = 1;       ///< of the hair
+    double root_width = 0;  ///< m, half-width at the root of a sub-spine; 0: that of the ferrule
+};
+
+/// Side nodes of a spine after a step: the edges of its spread hair, two to a node, tip first.
+struct SideNodes {
+    Vec3 direction{1, 0, 0};      ///< unit, ferrule frame: e at the root
+    Recycled<Vec3> position;      ///< metres from the root, ferrule frame; or empty
+    Recycled<double> flank;       ///< m, their half-widths without walls; or empty
+    Recycled<double> shift;       ///< [n+1] m, along e by friction; or empty
+    Recycled<signed char> slips;  ///< [n+1] nodes that slipped; or empty
+    double energy = 0;            ///< J, stored in their springs by that shift
+};
+
 /// One solved spine and its state. Arrays go from root to tip.
 struct Spine {
-    rod::Rod rod;                  ///< lengths and stiffness, in units of L and B0
-    rod::Memory memory;            ///< state of joints and contacts
-    Recycled<double> rest_radius;  ///< [n+1] m; √(a b) where the section is no circle
-    /// [n+1] m, half-widths at rest along the ferrule's broad side and across it; empty: a circle of `rest_radius`.
-    Recycled<Vec2> rest_section;
-    Recycled<Vec2> strip;    ///< corners of its part of the mouth, see ferrule.h; empty: a disc
-    double rest_length = 1;  ///< over the tuft's
-    double edge_short = 0;   ///< m, see FerruleSpine
-    Vec3 root{0};            ///< m, ferrule frame
-    double lean = 0;         ///< rad, of the clamp towards +x of the ferrule
-    double share = 1;        ///< of the hair
+    rod::Rod rod;        ///< lengths and stiffness, in units of L and B0
+    rod::Memory memory;  ///< state of joints and contacts
+    SpineRest rest;
     /// [n+1] unit, ferrule frame: its x and y carried along the bent spine; or empty.
     Recycled<Vec3> broad, across;
-    Vec3 wide{1, 0, 0};     ///< unit, ferrule frame: direction e at the root of the last step
-    double root_width = 0;  ///< m, half-width at the root of a sub-spine; 0: that of the ferrule
-    Vec2 one_sided{0};      ///< mean direction of splayed hair, across the clamp; see upright_hair.h
-    /// Side nodes of the last step, metres from the root, ferrule frame, tip first, two to a node; or empty.
-    Recycled<Vec3> side;
-    Recycled<double> flank;       ///< m, half-widths of those side nodes without walls; or empty
-    Recycled<double> aside;       ///< [n+1] m, shift of the side nodes along e by friction, or empty
-    Recycled<signed char> slips;  ///< [n+1] nodes that slipped in the last step, or empty
-    double aside_energy = 0;      ///< J, stored in their springs by that shift
-    double pressed = 0;           ///< contact energy of the last solve, B0/L
+    SideNodes sides;
+    Vec2 one_sided{0};   ///< mean direction of splayed hair, across the clamp; see upright_hair.h
+    double pressed = 0;  ///< contact energy of the last solve, B0/L
 };
 
 /// Two neighbouring spines: how they stand at rest, and what they remember.

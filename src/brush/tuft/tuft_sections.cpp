@@ -50,7 +50,7 @@ struct Wide {
 
 /// Where the wide axis is known best, and its direction there.
 Wide wide_axis(const SectionInput& in, const Recycled<Vec3>& t) {
-    const Vec3 kept = in.rotation * in.spine.wide;
+    const Vec3 kept = in.rotation * in.spine.sides.direction;
     Wide best;
     double most = 0;
     for (std::size_t i = 1; i < t.size() && !in.obstacles.empty(); ++i) {
@@ -148,7 +148,7 @@ Recycled<double> lowering(const SectionInput& in, const Recycled<Section>& secti
         const Section& s = sections[count - 1 - i];
         const rod::Obstacle& o = in.obstacles[i];
         const double z = glm::dot(s.centre - o.origin * in.preset.length, o.normal);
-        const double r = in.wide() ? o.radius * in.preset.length : in.spine.rest_radius[i];
+        const double r = in.wide() ? o.radius * in.preset.length : in.spine.rest.radius[i];
         const double upright = std::abs(glm::dot(s.m, o.normal));
         const double l = in.spine.rod.length[i - 1], gap = z - r;
         if (touch < 0 && gap < 0) touch = i > 1 ? at + l * gap_before / (gap_before - gap) : at;
@@ -192,12 +192,12 @@ struct Rest {
 };
 
 Rest rest_of(const SectionInput& in, const Recycled<Vec3>& t, const Recycled<Vec3>& e) {
-    if (!in.wide()) return {in.spine.rest_radius, in.spine.rest_radius, Recycled<Vec2>(e.size(), {1, 0})};
+    if (!in.wide()) return {in.spine.rest.radius, in.spine.rest.radius, Recycled<Vec2>(e.size(), {1, 0})};
     Rest out;
     const Recycled<Vec3> own = in.broad.empty() ? broad_axes(in.spine.memory, t) : Recycled<Vec3>{};
     const std::span<const Vec3> x = in.broad.empty() ? std::span<const Vec3>(own) : in.broad;
     for (std::size_t i = 0; i < e.size(); ++i) {
-        const Vec2& rest = in.spine.rest_section[i];
+        const Vec2& rest = in.spine.rest.section[i];
         const double broad = rest.x * glm::dot(e[i], x[i]), thick = rest.y * glm::dot(e[i], glm::cross(x[i], t[i]));
         const double along = std::hypot(broad, thick);
         out.along.push_back(along);
@@ -251,10 +251,10 @@ SideLoads side_loads(const SectionInput& in, const Recycled<Vec3>& t, const Recy
     auto& [at, plus, minus, friction] = out;
     at.assign(count, 0);
     plus = {Recycled<double>(count, 0), Recycled<double>(count, std::numeric_limits<double>::infinity())};
-    const double root = in.spine.root_width;
+    const double root = in.spine.rest.root_width;
     if (root > 0) plus.root = side_of_width(rest.along.front(), root, p.flatten_max);
     minus = plus;
-    friction = {Recycled<double>(count, 0), Recycled<double>(count, 0), in.spine.slips};
+    friction = {Recycled<double>(count, 0), Recycled<double>(count, 0), in.spine.sides.slips};
     for (std::size_t i = 0; i < count; ++i) {
         if (i > 0) at[i] = at[i - 1] + in.spine.rod.length[i - 1] * p.length;
         const double moment = i + 1 < count ? in.result.moment[i] : 0;
@@ -266,7 +266,7 @@ SideLoads side_loads(const SectionInput& in, const Recycled<Vec3>& t, const Recy
         const Vec3 wall = in.result.wall_force.empty() ? Vec3{0} : in.result.wall_force[i];
         friction.most[i] = kSides * kSideDrag * std::abs(glm::dot(in.result.contact_force[i] - wall, e[i])) * newton /
                            (in.spine.rod.weight[i] * p.length);
-        if (i < in.spine.aside.size()) friction.stuck[i] = in.spine.aside[i];
+        if (i < in.spine.sides.shift.size()) friction.stuck[i] = in.spine.sides.shift[i];
         if (i < in.result.slip.size()) friction.stuck[i] -= p.length * glm::dot(in.result.slip[i], e[i]);
         if (!in.walls.empty() && i > 0) {
             const std::size_t from_tip = 2 * (count - 1 - i);
@@ -332,11 +332,11 @@ Recycled<double> drop_factors(const SectionInput& in) {
     const auto height = [&](const Vec3& x) { return length * glm::dot(x - obstacle.origin, obstacle.normal); };
     const double hair = std::accumulate(in.spine.rod.length.begin(), in.spine.rod.length.end(), 0.0);
     const double depth = std::max(0.0, -height(clamp.position + hair * clamp.tangent));
-    const double gap = height(in.node.back()) - in.spine.rest_radius.back();
+    const double gap = height(in.node.back()) - in.spine.rest.radius.back();
     const double wet = rho * std::tanh(depth / (2 * rho)) * std::clamp(1 - gap / rho, 0.0, 1.0);
     double from_tip = 0;
     for (std::size_t i = out.size(); i-- > 0 && from_tip < 4 * rho;) {
-        const double r = in.spine.rest_radius[i];
+        const double r = in.spine.rest.radius[i];
         if (r > 0) out[i] = std::hypot(1.0, wet * (1 - from_tip / (4 * rho)) / r);
         if (i > 0) from_tip += length * in.spine.rod.length[i - 1];
     }
@@ -369,7 +369,7 @@ SectionOutput make_sections(const SectionInput& in) {
     out.spread_energy = widths.spread_energy;
     out.sections.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
-        const double r = in.spine.rest_radius[i];
+        const double r = in.spine.rest.radius[i];
         Section& section = out.sections[count - 1 - i];
         section.a = 0.5 * (widths.plus[i] + widths.minus[i]);
         section.b = r > 0 ? r * r / section.a : 0;

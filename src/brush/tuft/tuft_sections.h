@@ -30,7 +30,7 @@ struct SectionInput {
     std::span<const Vec3> along = {}, broad = {};  ///< as in SolvedRod
 
     /// A spine of a wide ferrule: its section at rest is an ellipse.
-    bool wide() const { return !spine.rest_section.empty(); }
+    bool wide() const { return !spine.rest.section.empty(); }
 };
 
 /// Result of `make_sections`.

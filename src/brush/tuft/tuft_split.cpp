@@ -40,7 +40,7 @@ rod::Clamp sub_spine_clamp(const Tuft& tuft, int k, int index) {
     const rod::Memory& m = tuft.trunk().memory;
     const int inner = std::max(0, k - 1);
     const Vec3 t = m.tangent[inner];
-    Vec3 e = tuft.pose.rotation * tuft.trunk().wide;
+    Vec3 e = tuft.pose.rotation * tuft.trunk().sides.direction;
     e = parallel_transport(e, tuft.pose.axis(), t);
     e = glm::normalize(e - glm::dot(e, t) * t);
     const double yaw = yaw_of(tuft, k, index);
@@ -78,7 +78,7 @@ void split(Tuft& tuft, const Branch& whole) {
         const rod::Rod part = rod::outer_part(tuft.trunk().rod, k, count);
         Spine sub_spine = make_spine(tuft.preset, part, clamp, xi, count);
         const double yaw = yaw_of(tuft, k, index);
-        Vec3 up = glm::cross(tuft.pose.rotation * tuft.trunk().wide, tuft.pose.axis());
+        Vec3 up = glm::cross(tuft.pose.rotation * tuft.trunk().sides.direction, tuft.pose.axis());
         up = parallel_transport(up, tuft.pose.axis(), clamp.tangent);
         const Quat turn = glm::angleAxis(-yaw, glm::normalize(up));
         for (int j = 0; j < part.segments(); ++j) {
@@ -100,14 +100,14 @@ void solve_sub_spines(Tuft& tuft, std::span<const ContactPlane> planes, TuftStat
     std::size_t next = whole.size();
     for (int index = 0; index < count_all; ++index) {
         Spine& sub_spine = tuft.sub_spines[index];
-        const std::size_t count = sub_spine.rest_radius.size();
+        const std::size_t count = sub_spine.rest.radius.size();
         std::span<const ContactPlane> own = planes;
         if (planes.size() > 1) own = planes.subspan(next, count);
         next += count;
         const rod::Clamp clamp = sub_spine_clamp(tuft, k, index);
         const Section& trunk = whole[whole.size() - 1 - static_cast<std::size_t>(k)];
         const double part = 1 / std::sqrt(static_cast<double>(count_all));
-        sub_spine.root_width = part * trunk.a;
+        sub_spine.rest.root_width = part * trunk.a;
         SolvedSpine solved = solve_spine({.preset = p,
                                           .clamp = clamp,
                                           .rotation = tuft.pose.rotation,
@@ -116,7 +116,6 @@ void solve_sub_spines(Tuft& tuft, std::span<const ContactPlane> planes, TuftStat
                                           .share = static_cast<double>(count_all),
                                           .dt = dt},
                                          sub_spine);
-        state.iterations += solved.result.iterations;
         state.work += solved.result.work;
         state.converged = state.converged && solved.result.converged;
         Branch branch = std::move(solved.branch);

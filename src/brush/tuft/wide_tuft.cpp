@@ -31,7 +31,7 @@ struct AllWalls {
 
     AllWalls(std::span<const ContactPlane> walls, const Tuft& tuft) {
         std::size_t nodes = 0;
-        for (const Spine& spine : tuft.spines) nodes += spine.rest_radius.size();
+        for (const Spine& spine : tuft.spines) nodes += spine.rest.radius.size();
         if (walls.empty()) return;
         beside = walls.first(2 * nodes);
         across = walls.subspan(2 * nodes);
@@ -48,7 +48,7 @@ struct NodeAxes {
 /// Obstacles of one spine (root first) from its planes (tip first). The tuft's reach depends on the direction.
 Recycled<rod::Obstacle> obstacles_of_wide(const Preset& p, const Spine& spine, const NodeAxes& axes,
                                           std::span<const ContactPlane> planes) {
-    const std::size_t count = spine.rest_radius.size();
+    const std::size_t count = spine.rest.radius.size();
     Recycled<rod::Obstacle> out;
     if (planes.empty()) return out;
     out.resize(count);
@@ -65,14 +65,14 @@ Recycled<rod::Obstacle> obstacles_of_wide(const Preset& p, const Spine& spine, c
 /// neighbours, metres, root first.
 Recycled<double> spread_half_widths(const Spine& spine, const Vec2& direction) {
     Recycled<double> out;
-    const std::size_t count = spine.rest_radius.size();
-    if (spine.flank.size() != 2 * count || spine.side.size() != 2 * count) return out;
+    const std::size_t count = spine.rest.radius.size();
+    if (spine.sides.flank.size() != 2 * count || spine.sides.position.size() != 2 * count) return out;
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t k = 2 * (count - 1 - i);
-        const Vec3 across = spine.side[k] - spine.side[k + 1];
+        const Vec3 across = spine.sides.position[k] - spine.sides.position[k + 1];
         const double size = glm::length(across);
-        const double a = 0.5 * (spine.flank[k] + spine.flank[k + 1]);
-        const double r = spine.rest_radius[i];
+        const double a = 0.5 * (spine.sides.flank[k] + spine.sides.flank[k + 1]);
+        const double r = spine.rest.radius[i];
         const Vec3 broadside = direction.x * spine.broad[i] + direction.y * spine.across[i];
         const double along = size > 0 ? std::abs(glm::dot(broadside, across) / size) : 1;
         out.push_back(std::hypot(a * along, r * r / a * std::sqrt(std::max(0.0, 1 - along * along))));
@@ -115,9 +115,9 @@ struct Coupled {
         const auto [beside, across] = AllWalls(all_walls, tuft);
         std::size_t first = 0;
         for (const Spine& spine : tuft.spines) {
-            const std::size_t count = spine.rest_radius.size();
-            laws.push_back(law_of(p, tuft.wetness, 1 / spine.share, dt));
-            int& most = laws.back().max_iterations;
+            const std::size_t count = spine.rest.radius.size();
+            laws.push_back(law_of(p, tuft.wetness, 1 / spine.rest.share, dt));
+            int& most = laws.back().limits.max_iterations;
             if (start.parts > 1) most = std::max(kLeastIterations, most / start.parts);
             const NodeAxes axes(spine.memory);
             obstacles.push_back(obstacles_of_wide(p, spine, axes, part_of(planes, first, count)));
@@ -155,11 +155,11 @@ struct Coupled {
             // The clamp's second axis is −y.
             rod::CoupledPair pair{
                 .first = beside.first, .second = beside.second, .direction = {direction.x, -direction.y}};
-            const FilmHeight film{tuft.preset.radius, beside.face, first.rest_section.front(),
-                                  second.rest_section.front()};
+            const FilmHeight film{tuft.preset.radius, beside.face, first.rest.section.front(),
+                                  second.rest.section.front()};
             for (std::size_t i = 0; i < beside.distance.size(); ++i) {
                 pair.touching.push_back(beside.distance[i] / length);
-                const Vec2 &l = first.rest_section[i], &r = second.rest_section[i];
+                const Vec2 &l = first.rest.section[i], &r = second.rest.section[i];
                 const double grown =
                     i < left.size() && i < right.size() ? kTouch * (left[i] + right[i] - l.x - r.x) : 0;
                 pair.spread.push_back((beside.distance[i] + std::max(0.0, grown)) / length);
@@ -195,15 +195,15 @@ void break_symmetries(Tuft& tuft, const Pose& from, const Pose& to, std::span<co
     const Vec3 taken = side_taken(tuft);
     std::size_t first = 0;
     for (Spine& spine : tuft.spines) {
-        const std::size_t count = spine.rest_radius.size();
+        const std::size_t count = spine.rest.radius.size();
         double length = 0;
         for (const double l : spine.rod.length) length += l;
         const rod::Clamp clamp = spine_clamp(tuft.preset, spine, to);
         // The hair of a ring falls outwards all round; that of a row to one side.
-        const bool outward = !has_broad_side(tuft.preset) && glm::length(spine.root) > 0;
+        const bool outward = !has_broad_side(tuft.preset) && glm::length(spine.rest.root) > 0;
         break_symmetry(tuft.preset, spine, from, to, part_of(planes, first, count),
                        {.tip = tuft.preset.length * (clamp.position + length * clamp.tangent),
-                        .aside = outward ? glm::normalize(spine.root) : Vec3{0, 1, 0},
+                        .aside = outward ? glm::normalize(spine.rest.root) : Vec3{0, 1, 0},
                         .taken = outward ? Vec3{0} : taken});
         first += count;
     }
@@ -235,18 +235,18 @@ Recycled<Spine> make_spines(const Preset& p, const Profile& profile) {
         for (double& w : rod.weight) w *= set.length;
         rod.buckling *= set.share / (set.length * set.length);
         Spine spine;
-        spine.root = {set.x, set.y, 0};
-        spine.strip = strip_corners(p, set);
-        spine.rest_length = set.length;
-        spine.edge_short = set.edge_short;
-        spine.lean = set.lean;
-        spine.share = set.share;
+        spine.rest.root = {set.x, set.y, 0};
+        spine.rest.strip = strip_corners(p, set);
+        spine.rest.length = set.length;
+        spine.rest.edge_short = set.edge_short;
+        spine.rest.lean = set.lean;
+        spine.rest.share = set.share;
         spine.rod = std::move(rod);
         spine.memory = rod::make_memory(spine.rod, spine_clamp(p, spine, {}));
         double u = 0;
         for (std::size_t i = 0; i <= lengths.size(); ++i) {
-            spine.rest_section.push_back(rest_half_widths(p, set, std::min(u, set.length)));
-            spine.rest_radius.push_back(std::sqrt(spine.rest_section[i].x * spine.rest_section[i].y));
+            spine.rest.section.push_back(rest_half_widths(p, set, std::min(u, set.length)));
+            spine.rest.radius.push_back(std::sqrt(spine.rest.section[i].x * spine.rest.section[i].y));
             if (i < lengths.size()) u += lengths[i];
         }
         out.push_back(std::move(spine));
@@ -274,8 +274,8 @@ Recycled<Beside> make_beside(const Preset& p, std::span<const Spine> spines) {
 }
 
 rod::Clamp spine_clamp(const Preset& p, const Spine& spine, const Pose& pose) {
-    const double c = std::cos(spine.lean), s = std::sin(spine.lean);
-    return {(pose.position + pose.rotation * spine.root) / p.length, pose.rotation * Vec3{s, 0, -c},
+    const double c = std::cos(spine.rest.lean), s = std::sin(spine.rest.lean);
+    return {(pose.position + pose.rotation * spine.rest.root) / p.length, pose.rotation * Vec3{s, 0, -c},
             pose.rotation * Vec3{c, 0, s}};
 }
 
@@ -298,7 +298,7 @@ rod::CouplingLaw coupling_of(const Preset& p, double wetness) {
 }
 
 double rest_reach(const Spine& spine, std::size_t i, const Vec3& x, const Vec3& t, const Vec3& n) {
-    const Vec2& rest = spine.rest_section[i];
+    const Vec2& rest = spine.rest.section[i];
     const double a = rest.x * glm::dot(n, x), b = rest.y * glm::dot(n, glm::cross(x, t)),
                  c = std::min(rest.x, rest.y) * glm::dot(n, t);
     return std::sqrt(a * a + b * b + c * c);
@@ -371,7 +371,7 @@ Followed follow_pose(Tuft& tuft, const Motion& m, Coupled& coupled, StepStart* s
         const int parts = m.planes.empty() ? 1 : count_substeps(p, m.from, m.to, bend);
         last.dt = m.dt / parts;
         for (int k = 1; k < parts; ++k) {
-            last.to = between(m.from, m.to, static_cast<double>(k) / parts);
+            last.to = interpolate(m.from, m.to, static_cast<double>(k) / parts);
             // With all passes: a blade that lands with too little friction between its spines falls to its side.
             follow_part(tuft, last, {parts}, coupled, out);
             last.from = last.to;
@@ -418,7 +418,7 @@ Neighbours neighbours_of(const Tuft& tuft, std::size_t k, const Recycled<Recycle
         Neighbour& neighbour = neighbours.emplace_back();
         for (std::size_t i = 0; i < std::min(node[k].size(), other.size()); ++i) {
             neighbour.apart.push_back(tuft.preset.length * (other[i] - node[k][i]));
-            neighbour.part.push_back(tuft.spines[k].rest_section[i].x / beside.distance[i]);
+            neighbour.part.push_back(tuft.spines[k].rest.section[i].x / beside.distance[i]);
         }
     }
     return neighbours;
@@ -442,13 +442,13 @@ SolvedSpines solve_spines(Tuft& tuft, const Pose& to, std::span<const ContactPla
         Spine& spine = tuft.spines[k];
         result.rods[k].slip = slip[k];
         const Neighbours neighbours = neighbours_of(tuft, k, bent.node);
-        const std::size_t count = spine.rest_radius.size();
+        const std::size_t count = spine.rest.radius.size();
         const SpineStep step{.preset = p,
                              .clamp = spine.memory.clamp,
                              .rotation = to.rotation,
                              .walls = part_of(AllWalls(walls, tuft).beside, 2 * first, 2 * count),
                              .wetness = tuft.wetness,
-                             .share = 1 / spine.share};
+                             .share = 1 / spine.rest.share};
         out.spines.push_back(finish_spine(step, spine,
                                           {.result = std::move(result.rods[k]),
                                            .node = bent.node[k],

@@ -114,7 +114,7 @@ Vec3 point_in_row(const std::vector<Strand>& strands, std::size_t k, std::size_t
 /// Metres by which the hair of a row ends beyond the end of its spine: that of a toe or a blade differs in length from
 /// one side of a strip to the other.
 double beyond_spine(const Tuft& tuft, const HairLengths& lengths, const Placed& placed) {
-    const double own = tuft.spines[static_cast<std::size_t>(placed.part.branch)].rest_length;
+    const double own = tuft.spines[static_cast<std::size_t>(placed.part.branch)].rest.length;
     return tuft.preset.length * (lengths.at(placed.whole.x) - own);
 }
 

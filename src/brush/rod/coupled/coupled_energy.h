@@ -47,7 +47,7 @@ class CoupledSystem {
     CoupledSystem(std::span<Solver> solvers, std::span<FrozenPair> pairs, const CouplingLaw& law)
         : solvers_(solvers), pairs_(pairs), law_(law) {}
 
-    double tolerance() const { return solvers_.front().law.tolerance; }
+    double tolerance() const { return solvers_.front().law.limits.tolerance; }
     double value() const { return value_; }
     std::span<const double> gradient() const { return gradient_; }
     std::span<const double> step() const { return step_; }

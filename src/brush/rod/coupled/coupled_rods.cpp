@@ -81,8 +81,8 @@ double tolerance_of_pass(const Work& w) {
     ForceChange mean;
     for (const Solver& s : w.solvers) {
         if (s.is_exact()) return 0;
-        mean.change += s.forces.change / static_cast<double>(w.solvers.size());
-        mean.sum += s.forces.sum / static_cast<double>(w.solvers.size());
+        mean.change += s.passes.forces.change / static_cast<double>(w.solvers.size());
+        mean.sum += s.passes.forces.sum / static_cast<double>(w.solvers.size());
     }
     return pass_tolerance(mean);
 }
@@ -200,14 +200,14 @@ CoupledResult solve_coupled(std::span<const CoupledRod> rods, std::span<const Co
     CoupledSystem system(w.solvers, w.pairs, law);
     CoupledResult out;
     out.rods.resize(rods.size());
-    const Law& limits = *rods.front().law;
+    const Law& first = *rods.front().law;
     start(rods, w, system, out.work);
     int iterations = 0, passes = 1, stalls = 0;
     bool converged = false;
     for (Solver& s : w.solvers) s.expect_forces();
     const auto minimise_pass = [&](double tolerance) {
         const NewtonResult r =
-            minimise(system, {limits.max_iterations - iterations, stalls_left(limits, stalls), tolerance});
+            minimise(system, {first.limits.max_iterations - iterations, stalls_left(first, stalls), tolerance});
         stalls += r.stalls;
         iterations += r.iterations;
         out.work += {.iterations = r.iterations, .evaluations = r.evaluations, .values = r.values};
@@ -218,7 +218,7 @@ CoupledResult solve_coupled(std::span<const CoupledRod> rods, std::span<const Co
         NewtonResult r = minimise_pass(rough);
         const bool settles = std::all_of(w.solvers.begin(), w.solvers.end(),
                                          [](const Solver& s) { return s.fine.empty() || s.forces_settled(); });
-        if (r.converged && rough > limits.tolerance && settles) r.converged = minimise_pass(0).converged;
+        if (r.converged && rough > first.limits.tolerance && settles) r.converged = minimise_pass(0).converged;
         bool at_rest = r.converged;
         for (Solver& s : w.solvers) {
             if (!s.fine.empty() && !s.take_normal_forces(passes)) at_rest = false;
@@ -226,9 +226,9 @@ CoupledResult solve_coupled(std::span<const CoupledRod> rods, std::span<const Co
         const Recycled<FrozenNode> before = nodes_of(w.pairs);
         relax_pairs(w, passes);
         system.freeze_pairs();
-        converged = at_rest && settled(before, nodes_of(w.pairs), limits.pass_tolerance);
-        if (converged || passes >= limits.max_passes || iterations >= limits.max_iterations ||
-            stalls_left(limits, stalls) <= 0)
+        converged = at_rest && settled(before, nodes_of(w.pairs), first.limits.pass_tolerance);
+        if (converged || passes >= first.limits.max_passes || iterations >= first.limits.max_iterations ||
+            stalls_left(first, stalls) <= 0)
             break;
         for (Solver& s : w.solvers) {
             s.ws.ahead = s.ws.at.node;
