@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/ease.h"
+#include "core/error.h"
 #include "stroke/gesture/roll.h"
 #include "stroke/placement/surface_mapping.h"
 #include "stroke/placement/tip_lag.h"
@@ -135,6 +136,18 @@ std::vector<CurveSample> project_curve(const mesh::SurfaceQuery& query, std::spa
         }
     }
     return curve;
+}
+
+writer::ModelPath path_of_curve(const mesh::SurfaceQuery& query, std::span<const CurvePoint> points) {
+    writer::ModelPath path;
+    for (const CurveSample& s : project_curve(query, points)) {
+        if (!s.on) break;
+        path.points.push_back(s.position);
+        path.normals.push_back(s.normal);
+    }
+    if (path.points.size() < 2)
+        throw Error(Message("There is no curve: set its points with the tool Curve, then come back to this one"));
+    return path;
 }
 
 std::vector<std::vector<brush::Pose>> curve_poses(const mesh::SurfaceQuery& query, std::span<const CurvePoint> points,

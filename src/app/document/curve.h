@@ -6,6 +6,7 @@
 
 #include "mesh/query/surface_query.h"
 #include "stroke/placement/placement.h"
+#include "writer/layout/text_layout.h"
 
 /// \file
 /// Lines and curves through control points on a model. Called by tools/curve_tool.h. Window thread.
@@ -39,6 +40,9 @@ struct CurveSample {
 /// points. Source: [Barry1988].
 std::vector<CurveSample> project_curve(const mesh::SurfaceQuery& query, std::span<const CurvePoint> points,
                                        int per_span = 64);
+
+/// Returns the curve up to where it leaves the surface. Throws `Error` where there is none.
+writer::ModelPath path_of_curve(const mesh::SurfaceQuery& query, std::span<const CurvePoint> points);
 
 /// How a curve is painted.
 struct CurveHand {

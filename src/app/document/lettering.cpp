@@ -20,7 +20,6 @@ constexpr std::size_t kMostStrokesShown = 750, kMostCharactersShown = 60;
 constexpr double kUsualPart = 0.1;  // of the model's diagonal
 constexpr double kShownStep = 0.1;  // of a character's side: the longest straight part of its preview
 constexpr int kMostAcross = 1024;   // pixels of a copied picture in its panel
-constexpr int kPerSpan = 64;        // samples of a curve between two control points
 
 /// Rounded to a thousandth, as `place_words` states it.
 double rounded(double value) {
@@ -29,16 +28,12 @@ double rounded(double value) {
 
 /// The curve up to where it leaves the surface, and its point nearest to `at`.
 LetteringPath path_of(const mesh::SurfaceQuery& query, const std::vector<CurvePoint>& points, const Vec3& at) {
-    LetteringPath on;
-    double nearest = 1e300;
-    for (const CurveSample& s : project_curve(query, points, kPerSpan)) {
-        if (!s.on) break;
-        if (const double away = glm::distance(s.position, at); away < nearest) nearest = away, on.middle = s.along;
-        on.path.points.push_back(s.position);
-        on.path.normals.push_back(s.normal);
+    LetteringPath on{.path = path_of_curve(query, points)};
+    double nearest = 1e300, along = 0;
+    for (std::size_t i = 0; i < on.path.points.size(); ++i) {
+        if (i > 0) along += glm::distance(on.path.points[i - 1], on.path.points[i]);
+        if (const double away = glm::distance(on.path.points[i], at); away < nearest) nearest = away, on.middle = along;
     }
-    if (on.path.points.size() < 2)
-        throw Error(Message("There is no curve: set its points with the tool Curve, then come back to this one"));
     return on;
 }
 

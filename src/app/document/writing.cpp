@@ -61,6 +61,7 @@ void set_size(WritingForm& form, const Box& box) {
     form.centre = Vec2(box.centre());
     form.width = stroke::width_of(box);
     form.height = box.size().y;
+    form.box = box;
 }
 
 WritingForm read_form(const std::filesystem::path& file, io::SvgPainting painting) {
@@ -179,6 +180,10 @@ stroke::Placement place_writing(const Writing& w, const mesh::SurfaceQuery& quer
     return place_flat(query, at, normal, right, eye, {w.turn, w.mapping});
 }
 
+double painted_width(const Writing& w) {
+    return width_mm(w) * kMillimetre;
+}
+
 double painted_scale(const Writing& w) {
     const double width = w.form().width;
     return width > 0 && width_mm(w) > 0 ? width_mm(w) * kMillimetre / width : w.scale;
@@ -201,6 +206,13 @@ std::string place_words(const stroke::Placement& p, stroke::SurfaceMapping mappi
     return words;
 }
 
+std::string kind_words(const Writing& w) {
+    std::string words;
+    if (w.mirrored) words += " --place-mirror";
+    if (is_svg(w.file)) words += w.in_colours() ? " --areas mask" : " --areas brush";
+    return words;
+}
+
 }  // namespace
 
 std::string place_words(const stroke::Placement& p) {
@@ -208,10 +220,14 @@ std::string place_words(const stroke::Placement& p) {
 }
 
 std::string place_words(const Writing& w, const stroke::Placement& p) {
-    std::string words = place_words(p, w.mapping, fmt::format(" --place-width {:.3f}", width_mm(w)));
-    if (w.mirrored) words += " --place-mirror";
-    if (is_svg(w.file)) words += w.in_colours() ? " --areas mask" : " --areas brush";
-    return words;
+    return place_words(p, w.mapping, fmt::format(" --place-width {:.3f}", width_mm(w))) + kind_words(w);
+}
+
+std::string size_words(const Writing& w) {
+    std::string words = fmt::format(" --place-width {:.3f}", width_mm(w));
+    if (w.mapping != stroke::SurfaceMapping::drape)
+        words += " --mapping " + std::string(stroke::surface_mapping_name(w.mapping));
+    return words + kind_words(w);
 }
 
 std::string quoted(const std::string& text) {
@@ -231,9 +247,8 @@ bool has_widths(const Writing& w) {
     return std::ranges::any_of(w.form().traces, [](const auto& t) { return t.line_width > 0 && !t.pressed; });
 }
 
-PlacedWriting placed_writing(const Writing& w, const stroke::Placement& placement, const WritingHand& hand) {
-    const WritingForm& form = w.form();
-    std::vector<stroke::RecordedStroke> traces = form.traces;
+PlacedWriting unplaced_writing(const Writing& w, const WritingHand& hand) {
+    std::vector<stroke::RecordedStroke> traces = w.form().traces;
     for (stroke::FlatArea* area : areas_of(traces)) area->placement.mapping = w.mapping;
     for (stroke::RecordedStroke& trace : traces) {
         if (!w.in_colours())
@@ -253,8 +268,13 @@ PlacedWriting placed_writing(const Writing& w, const stroke::Placement& placemen
     options.ink = w.own_ink ? "" : hand.ink;
     options.other_ink = hand.ink;
     stroke::append_entries(out.entries, std::move(traces), options);
+    return out;
+}
+
+PlacedWriting placed_writing(const Writing& w, const stroke::Placement& placement, const WritingHand& hand) {
+    PlacedWriting out = unplaced_writing(w, hand);
     const std::vector<stroke::StrokeSamples*> drawing = stroke::drawing_in(out.entries, true);
-    const stroke::DrawingPlace place{placement, form.centre, out.scale, w.mirrored};
+    const stroke::DrawingPlace place{placement, w.form().centre, out.scale, w.mirrored};
     stroke::place_drawing(drawing, place);
     stroke::place_areas(stroke::areas_in(out.entries, true), place);
     const Box box = stroke::extent_of(drawing);

@@ -19,6 +19,15 @@ struct WritingForm {
     std::vector<Message> notes;                  ///< skipped content of the file, one line each
     Vec2 centre{0};                              ///< metres, of the ink of all traces
     double width = 0, height = 0;                ///< metres, of the ink of all traces, as in the file
+    Box box;                                     ///< metres, of the ink of all traces, in the frame of the file
+};
+
+/// What the copies of a drawing follow.
+enum class BandLine {
+    none,   ///< it is placed once
+    edge,   ///< the feature line nearest to the cursor
+    rim,    ///< round the model, level, through the cursor
+    curve,  ///< the curve set last with the tool Curve
 };
 
 /// A loaded drawing and how the user places it.
@@ -30,6 +39,8 @@ struct Writing {
     double turn = 0;        ///< radians, clockwise in the view
     bool mirrored = false;  ///< from left to right
     stroke::SurfaceMapping mapping = stroke::SurfaceMapping::drape;
+    BandLine along = BandLine::none;
+    int repeats = 0;        ///< copies along a line; 0: as many as it has room for, made to meet
     bool own_ink = false;   ///< uses the inks that the file names: `areas` where there are any, else brush and ink
     bool own_width = true;  ///< uses the line widths of the drawing, where it has any
 
@@ -69,6 +80,12 @@ stroke::Placement place_writing(const Writing& writing, const mesh::SurfaceQuery
 /// Returns the scale at which the drawing is painted: `writing.scale` with the width rounded to 0.001 mm.
 double painted_scale(const Writing& writing);
 
+/// Returns the width that it is painted with, metres, rounded to 0.001 mm.
+double painted_width(const Writing& writing);
+
+/// Returns the options of `tuft paint` for size and kind of a drawing, with a space before each.
+std::string size_words(const Writing& writing);
+
 /// Returns the options of `tuft paint` for this placement: "--place 1.000,2.000,3.000 --place-width 60.000 --place-turn
 /// 5.00"; for SVG with the "--areas" by which it is painted.
 std::string place_words(const Writing& writing, const stroke::Placement& placement);
@@ -96,6 +113,8 @@ struct PlacedWriting {
     stroke::BrushFit fit;
 };
 PlacedWriting placed_writing(const Writing& writing, const stroke::Placement& placement, const WritingHand& hand);
+/// The same before they have a place: in the frame of the file, with their mapping.
+PlacedWriting unplaced_writing(const Writing& writing, const WritingHand& hand);
 
 /// Returns the lines of a drawing and the outlines of its areas, the latter closed; metres, in the frame of the file.
 std::vector<std::vector<Vec2>> drawn_lines(const WritingForm& form);

@@ -41,7 +41,11 @@ ToolText text_of_tool(const Session& s) {
             return {"Curve", "Click: set points    Enter: paint    Esc: drop them"};
         case Tool::writing:
             return {"Place", s.tools.writing.empty() ? "Choose writing or a drawing in the panel"
-                                                     : "Click: place it    Wheel: size    Shift + wheel: turn"};
+                             : s.tools.writing.along == BandLine::edge
+                                 ? "Click beside an edge: copies along it    Wheel: size"
+                             : s.tools.writing.along != BandLine::none
+                                 ? "Click: copies along the line    Wheel: size"
+                                 : "Click: place it    Wheel: size    Shift + wheel: turn"};
         case Tool::text:
             return {"Write", s.tools.lettering.empty() ? "Type a text in its panel"
                                                        : "Click: write it    Wheel: size    Shift + wheel: turn"};

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -84,7 +85,33 @@ void choices(Ui& ui, const std::array<std::tuple<Value, const char*, const char*
     ImGui::PopStyleVar();
 }
 
-void writing_row(Ui& ui, Writing& w, const Row& row) {
+// How many copies lie along a line, in the place of the turn.
+void band_options(Ui& ui, Writing& w, const DrawingPlace& place, const Row& row) {
+    const float left = ImGui::GetCursorPosX();
+    bool meet = w.repeats == 0;
+    if (ui.toggle("Meet", meet,
+                  "As many copies as the line has room for, made to meet; off: a number of them, as wide as they are"))
+        w.repeats = meet ? 0 : std::max(1, place.copies);
+    ImGui::SameLine(0, row.gap);
+    const float room = left + row.width - ImGui::GetCursorPosX();
+    if (w.repeats > 0) {
+        double n = w.repeats;
+        if (ui.named_slider("Copies", n, {1, 100, "%.0f"}, "Along the line, evenly spaced", room))
+            w.repeats = static_cast<int>(std::lround(n));
+        return;
+    }
+    const std::string text = !place.fault.empty() ? ui.tr("No line is near")
+                             : place.copies > 0
+                                 ? ui.sentence(Message("{} copies of {} mm", place.copies,
+                                                       fmt::format("{:.1f}", place.copy_width / kMillimetre)))
+                                 : std::string();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(ui.fitted(text, room).c_str());
+    ui.mark("Copies along the line");
+    if (!place.fault.empty()) ui.hint(ui.sentence(place.fault).c_str());
+}
+
+void writing_row(Ui& ui, Writing& w, const DrawingPlace& place, const Row& row) {
     static constexpr std::array<std::tuple<stroke::SurfaceMapping, const char*, const char*>, 3> kMappings{
         {{stroke::SurfaceMapping::drape, "Drape",
           "Bent round the surface; bridges small grooves, panel gaps and scan noise"},
@@ -97,8 +124,11 @@ void writing_row(Ui& ui, Writing& w, const Row& row) {
                                    "Wheel over the model", row.width))
         w.scale = width / own;
     ImGui::SameLine(0, row.gap);
-    ui.named_slider("Turn", w.turn, {-180 * kDegree, 180 * kDegree, "%.0f\xc2\xb0", kDegree},
-                    "Shift and wheel over the model", row.width);
+    if (w.along == BandLine::none)
+        ui.named_slider("Turn", w.turn, {-180 * kDegree, 180 * kDegree, "%.0f\xc2\xb0", kDegree},
+                        "Shift and wheel over the model", row.width);
+    else
+        band_options(ui, w, place, row);
     ImGui::SameLine(0, row.gap);
     choices(ui, kMappings, w.mapping, row.width, ui.px(2));
 }
@@ -162,7 +192,7 @@ void tool_options(const OptionParts& s, float left, float top, float width) {
         brush_row(s, row);
         if (tool == Tool::brush || tool == Tool::eraser) hand_row(ui, s.tools.pointer, row);
         if (tool == Tool::line || tool == Tool::curve) curve_row(s, row);
-        if (tool == Tool::writing) writing_row(ui, s.tools.writing, row);
+        if (tool == Tool::writing) writing_row(ui, s.tools.writing, s.tools.place, row);
         if (tool == Tool::text) lettering_row(ui, s.tools.lettering, row);
     }
     ImGui::End();

@@ -122,6 +122,28 @@ void place_fields(Ui& ui, ToolState& tools) {
 
 namespace {
 
+// Once, or in copies along a line of the model.
+void band_row(Ui& ui, Writing& w) {
+    struct Choice {
+        BandLine line;
+        const char *name, *hint;
+    };
+    static constexpr Choice kChoices[] = {
+        {BandLine::none, "Once", "One drawing, at the cursor"},
+        {BandLine::edge, "Edge",
+         "Copies along the border, edge, shut line or crease nearest to the cursor, on the cursor's side of it"},
+        {BandLine::rim, "Round", "Copies round the model, level, through the place under the cursor"},
+        {BandLine::curve, "Curve##direction", "Along the curve whose points were set last with the tool Curve"}};
+    const float gap = ui.px(2), all = ImGui::GetContentRegionAvail().x;
+    const float each = (all - 3 * gap) / 4 / ui.settings().scale;
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));
+    for (const Choice& choice : kChoices) {
+        if (choice.line != BandLine::none) ImGui::SameLine(0, gap);
+        if (ui.choice(choice.name, w.along == choice.line, choice.hint, each)) w.along = choice.line;
+    }
+    ImGui::PopStyleVar();
+}
+
 void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
     if (tools.active != Tool::writing) return;
     Writing& w = tools.writing;
@@ -147,6 +169,7 @@ void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
     ui.toggle("Snap", tools.place.snaps,
               "To the plane of symmetry and level with other drawings; Ctrl places it freely");
     if (tools.place.has_fields) place_fields(ui, tools);
+    band_row(ui, w);
     const bool names =
         std::ranges::any_of(w.lines.traces, [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });
     if (!w.areas.traces.empty() && !w.lines.traces.empty())

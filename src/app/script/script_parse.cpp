@@ -29,7 +29,8 @@
 ///   shading, light, parallel, azimuth, elevation, zoom,
 ///                           layer, export-size, export-pictures,
 ///                           export-picture-width, film-width (pixels), film-seconds, pressure, writing-width (mm),
-///                           writing-turn (degrees, anticlockwise), writing-mirror, writing-mapping, roll (degrees,
+///                           writing-turn (degrees, anticlockwise), writing-mirror, writing-mapping, writing-along
+///                           (none, edge, rim, curve), writing-repeat (0: as many as fit), roll (degrees,
 ///                           anticlockwise), roll-follow, string, radial, mirror, persistent, tool, language, theme,
 ///                           text, text-style, text-glyphs (file or folder; "" for the shipped characters),
 ///                           text-direction (horizontal, vertical, rim, curve), text-size (mm), text-spacing,

@@ -63,6 +63,7 @@ void forget_model(Session& s) {
     s.colours.palette.fresh = true;
     s.tools.curve = {};
     s.tools.lettering.curve.clear();
+    s.tools.place.lines.reset();
     s.tools.lettering.kept.clear();
 }
 

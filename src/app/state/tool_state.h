@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "app/document/curve.h"
@@ -9,6 +10,7 @@
 #include "app/input/pointer.h"
 #include "stroke/gesture/symmetry.h"
 #include "stroke/journal/entry/fill.h"
+#include "writer/layout/feature_line.h"
 
 /// \file
 /// The tools' state. Window thread.
@@ -25,6 +27,9 @@ struct DrawingPlace {
     std::array<double, 3> millimetres{};             ///< position, at the cursor or as typed
     bool has_fields = false;                         ///< its position is shown in fields
     bool is_typed = false;                           ///< it is to be placed at `millimetres`
+    std::unique_ptr<writer::FeatureLines> lines;     ///< of the model, for bands along an edge; null: not looked for
+    int copies = 0;                                  ///< of the band that is shown; 0: none
+    double copy_width = 0;                           ///< metres, of each of them
 };
 
 /// The active tool and the settings of each tool.

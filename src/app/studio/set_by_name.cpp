@@ -8,6 +8,7 @@
 
 #include "app/panels/panels.h"
 #include "core/text/units.h"
+#include "writer/layout/band.h"
 
 namespace tuft::app {
 
@@ -107,6 +108,12 @@ constexpr Setting kToolSettings[] = {
      [](Session& s, const SettingValue& v) {
          s.tools.writing.mapping = v.choice<stroke::SurfaceMapping>({"wrap", "drape", "project"});
      }},
+    {"writing-along",
+     [](Session& s, const SettingValue& v) {
+         s.tools.writing.along = v.choice<BandLine>({"none", "edge", "rim", "curve"});
+     }},
+    {"writing-repeat",
+     [](Session& s, const SettingValue& v) { s.tools.writing.repeats = v.whole(0, writer::kMostCopies); }},
     {"text", [](Session& s, const SettingValue& v) { set_text(s.tools.lettering, v.text); }},
     {"text-style", [](Session& s, const SettingValue& v) { s.tools.lettering.wanted.style = v.text; }},
     {"text-glyphs", [](Session& s, const SettingValue& v) { s.tools.lettering.wanted.glyphs = v.text; }},

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/tools/aim.h"
+#include "core/error.h"
 #include "core/text/units.h"
 
 namespace tuft::app {
@@ -15,36 +16,89 @@ stroke::Placement WritingTool::placement_at(const PlacingSpot& spot) const {
                          spot.eye);
 }
 
+WritingBand WritingTool::band_at(const PlacingSpot& spot) const {
+    Session& s = session_;
+    if (!s.tools.place.lines) s.tools.place.lines = std::make_unique<writer::FeatureLines>(s.paint_thread->surface());
+    return lay_band(s.tools.writing,
+                    {.query = s.paint_thread->surface(),
+                     .lines = *s.tools.place.lines,
+                     .curve = s.tools.lettering.curve,
+                     .texel = s.paint_thread->model().texels.texel_size},
+                    spot.at);
+}
+
+WritingTool::PreviewKey WritingTool::key_at(const PlacingSpot& spot) const {
+    const Writing& w = session_.tools.writing;
+    const bool once = w.along == BandLine::none;
+    return {.placement = once ? placement_at(spot) : stroke::Placement{},
+            .at = once ? Vec3(0) : rounded_place(spot.at),
+            .scale = w.scale,
+            .along = w.along,
+            .repeats = w.repeats,
+            .curve = session_.tools.lettering.curve.size(),
+            .mirrored = w.mirrored,
+            .own_ink = w.own_ink,
+            .mapping = w.mapping};
+}
+
+void WritingTool::drop_preview() {
+    DrawingPlace& place = session_.tools.place;
+    place.preview.clear();
+    place.guides.clear();
+    place.fault = {};
+    place.copies = 0;
+    shown_.reset();
+}
+
 void WritingTool::watch(const Event* cursor) {
     Session& s = session_;
     if (s.tools.active != Tool::writing) {
-        scale_ = 0;
+        shown_.reset();
         return;
     }
     if (std::exchange(s.tools.place.is_typed, false) && !s.tools.writing.empty())
         if (const auto typed = typed_spot(s)) place(*typed);
     const auto spot = s.tools.writing.empty() ? std::nullopt : spot_at(s, cursor);
-    s.tools.place.guides.clear();
-    if (!spot) {
-        s.tools.place.preview.clear();
-        scale_ = 0;
-        return;
+    if (!spot) return drop_preview();
+    preview(*spot);
+}
+
+void WritingTool::preview(const PlacingSpot& spot) {
+    Session& s = session_;
+    DrawingPlace& place = s.tools.place;
+    const PreviewKey now = key_at(spot);
+    const Seen seen{camera_of(s), section_plane(s.view, s.paint_thread->model().mesh->bounds)};
+    const bool once = now.along == BandLine::none, same = shown_ == now;
+    show_place(s.tools, once ? now.placement.origin : now.at);
+    if (once) place.guides = spot.guides;
+    if (same && seen == seen_) return;
+    if (!same) {
+        drop_preview();
+        if (once) {
+            place.guides = spot.guides;
+            place.preview = preview_lines(s.paint_thread->surface(), s.tools.writing, now.placement);
+        } else {
+            show_band(spot);
+        }
     }
-    s.tools.place.guides = spot->guides;
-    const stroke::Placement at = placement_at(*spot);
-    show_place(s.tools, at.origin);
-    const stroke::Placement& old = placement_;
-    const render::GlCamera seen_from = camera_of(s);
-    const Vec4f section = section_plane(s.view, s.paint_thread->model().mesh->bounds);
-    const bool same = at.origin == old.origin && at.right == old.right && at.down == old.down &&
-                      at.mapping == old.mapping && scale_ == s.tools.writing.scale;
-    if (same && seen_from == camera_ && section == section_) return;
-    placement_ = at;
-    scale_ = s.tools.writing.scale;
-    camera_ = seen_from;
-    section_ = section;
-    if (!same) s.tools.place.preview = preview_lines(s.paint_thread->surface(), s.tools.writing, at);
-    find_seen(s.tools.place.preview, s);
+    find_seen(place.preview, s);
+    shown_ = now;
+    seen_ = seen;
+}
+
+void WritingTool::show_band(const PlacingSpot& spot) {
+    Session& s = session_;
+    DrawingPlace& place = s.tools.place;
+    try {
+        WritingBand band = band_at(spot);
+        place.preview = preview_lines(s.paint_thread->surface(), s.tools.writing, band);
+        place.copies = band.band.repeats;
+        place.copy_width = band.band.width;
+        if (band.path.closed) band.path.points.push_back(band.path.points.front());
+        place.guides = {std::move(band.path.points)};
+    } catch (const Error& error) {
+        place.fault = error.message();
+    }
 }
 
 void WritingTool::wheel(const Event& e) {
@@ -62,12 +116,26 @@ void WritingTool::place(const Event* cursor) {
 
 void WritingTool::place(const PlacingSpot& spot) {
     Session& s = session_;
-    const stroke::Placement at = placement_at(spot);
+    const Writing& w = s.tools.writing;
     // Pressures that are made up stay as they are while the slider is where it is at first.
     const WritingHand hand{s.brush.preset, s.brush.ink, s.tools.pointer.pressure / PointerSettings{}.pressure};
-    show_message(s.status, Message("Placed: {}", place_words(s.tools.writing, at)));
-    s.paint_thread->post(PaintDrawing{placed_writing(s.tools.writing, at, hand),
-                                      group_settings(s, stroke::group_name(s.tools.writing.file))});
+    PaintDrawing command{.drawing = {}, .group = group_settings(s, stroke::group_name(w.file))};
+    std::string words;
+    try {
+        if (w.along == BandLine::none) {
+            const stroke::Placement at = placement_at(spot);
+            command.drawing = placed_writing(w, at, hand);
+            words = place_words(w, at);
+        } else {
+            const WritingBand band = band_at(spot);
+            command.drawing = placed_writing(w, band, hand);
+            words = place_words(w, band);
+        }
+    } catch (const Error& error) {
+        return show_message(s.status, error.message());
+    }
+    show_message(s.status, Message("Placed: {}", words));
+    s.paint_thread->post(std::move(command));
 }
 
 }  // namespace tuft::app

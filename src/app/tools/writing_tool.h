@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "app/document/writing_band.h"
 #include "app/input/events.h"
 #include "app/session/session.h"
 #include "app/tools/placing.h"
@@ -24,15 +25,35 @@ class WritingTool {
     void place(const Event* cursor);
 
   private:
+    /// What a preview depends on.
+    struct PreviewKey {
+        stroke::Placement placement;  ///< of one copy
+        Vec3 at{0};                   ///< of a band
+        double scale = 0;
+        BandLine along = BandLine::none;
+        int repeats = 0;
+        std::size_t curve = 0;  ///< number of its points
+        bool mirrored = false, own_ink = false;
+        stroke::SurfaceMapping mapping = stroke::SurfaceMapping::drape;
+        bool operator==(const PreviewKey&) const = default;
+    };
+    /// From where it is seen.
+    struct Seen {
+        render::GlCamera camera;
+        Vec4f section{0};
+        bool operator==(const Seen&) const = default;
+    };
     stroke::Placement placement_at(const PlacingSpot& spot) const;
+    WritingBand band_at(const PlacingSpot& spot) const;
+    PreviewKey key_at(const PlacingSpot& spot) const;
+    void preview(const PlacingSpot& spot);
+    void show_band(const PlacingSpot& spot);
+    void drop_preview();
     void place(const PlacingSpot& spot);
 
     Session& session_;
-    // Arguments of the last preview.
-    stroke::Placement placement_;
-    double scale_ = 0;
-    render::GlCamera camera_;
-    Vec4f section_{0};
+    std::optional<PreviewKey> shown_;  ///< of the last preview
+    Seen seen_;
 };
 
 }  // namespace tuft::app

@@ -33,11 +33,8 @@ PathOnModel curve_path(const stroke::Model& model, const Paint& arguments, const
 /// Number of copies of `--repeat`: 0 for "fit". Throws `UsageError` for any other text.
 int repeats_of(const std::string& text);
 
-/// Repeats the flat strokes that have no place of their own along the path of `--along`: N copies L / N apart on a path
-/// of length L, each bent by its geodesic curvature (stroke/drawing/bend.h). With "fit" N is the number nearest to L
-/// over the drawing's width, and the drawing is scaled so that neighbours meet; with a number so, too, unless
-/// `--place-width` gives its width. On a closed path the first copy stands where the path begins, on an open one half
-/// a step from its end. Then the strokes are as `place_strokes` leaves them.
+/// Repeats flat strokes along the path of `--along` (`writer::band_of`, `writer::repeat_along`): those without a place
+/// of their own, or all of them when the arguments give a point. Else the strokes are as `place_strokes` leaves them.
 PlacedDrawing place_along(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
                           const Paint& arguments, Console& console);
 

@@ -137,26 +137,13 @@ void note_placed(const PlacedDrawing& p, const Paint& a, const Box& area, double
 }
 
 std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
-                                            const Paint& a, const stroke::BrushFit& fit, stroke::WidthTables& widths,
-                                            Console& console) {
-    const auto mapping = stroke::surface_mapping_named(a.place.edges == "wrap" ? "wrap" : a.place.mapping);
-    for (stroke::FlatArea* area : stroke::areas_in(strokes, true)) {
-        if (!area->placed) area->placement.mapping = stroke::SurfaceMapping::drape;
-        if (mapping) area->placement.mapping = *mapping;
-    }
-    for (stroke::JournalEntry& entry : strokes) {
-        stroke::PaintStroke* s = entry.as<stroke::PaintStroke>();
-        if (!s || s->layer == stroke::kPaletteLayer) continue;  // in its own frame
-        if (!s->trace.placed) s->trace.placement.mapping = stroke::SurfaceMapping::drape;
-        if (mapping) s->trace.placement.mapping = *mapping;
-    }
+                                            const Paint& a, std::vector<stroke::StrokeSamples*>& drawing,
+                                            DrawnSize& drawn, Console& console) {
+    set_mappings(strokes, a);
     const bool all = !a.place.at_mm.empty() || !a.place.on.empty();
-    const std::vector<stroke::StrokeSamples*> drawing = stroke::drawing_in(strokes, all);
+    drawing = stroke::drawing_in(strokes, all);
     const std::vector<stroke::FlatArea*> areas = stroke::areas_in(strokes, all);
-    if (drawing.empty() && areas.empty()) {
-        stroke::choose_brushes(strokes, {}, fit, widths);
-        return {};
-    }
+    if (drawing.empty() && areas.empty()) return {};
     stroke::arrange_parts(drawing);
     Box area = stroke::extent_of(drawing);
     for (const stroke::FlatArea* part : areas) stroke::add_extent(area, *part);
@@ -183,21 +170,43 @@ std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& s
                                      Vec2(area.centre()), scale, a.place.mirror};
     stroke::place_drawing(drawing, place);
     stroke::place_areas(areas, place);
-    stroke::choose_brushes(strokes, {drawing, scale, scale * std::max(area.size().x, area.size().y)}, fit, widths);
+    drawn = {.scale = scale, .extent = scale * std::max(area.size().x, area.size().y)};
     return placed;
 }
 
 }  // namespace
 
-std::optional<PlacedDrawing> place_strokes(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
-                                           const Paint& a, Console& console) {
+void set_mappings(std::vector<stroke::JournalEntry>& strokes, const Paint& a) {
+    const auto mapping = stroke::surface_mapping_named(a.place.edges == "wrap" ? "wrap" : a.place.mapping);
+    for (stroke::FlatArea* area : stroke::areas_in(strokes, true)) {
+        if (!area->placed) area->placement.mapping = stroke::SurfaceMapping::drape;
+        if (mapping) area->placement.mapping = *mapping;
+    }
+    for (stroke::JournalEntry& entry : strokes) {
+        stroke::PaintStroke* s = entry.as<stroke::PaintStroke>();
+        if (!s || s->layer == stroke::kPaletteLayer) continue;  // in its own frame
+        if (!s->trace.placed) s->trace.placement.mapping = stroke::SurfaceMapping::drape;
+        if (mapping) s->trace.placement.mapping = *mapping;
+    }
+}
+
+void finish_strokes(std::vector<stroke::JournalEntry>& strokes, const std::vector<stroke::StrokeSamples*>& drawing,
+                    const DrawnSize& size, const Paint& a, Console& console) {
     stroke::WidthTables widths;
     const bool chosen = !a.stroke.brush.empty();
     const stroke::BrushFit fit{.grow = !chosen, .fit = !chosen || a.drawing.fit_brush};
-    const std::optional<PlacedDrawing> placed = place_on_model(strokes, model, a, fit, widths, console);
+    stroke::choose_brushes(strokes, {drawing, size.scale, size.extent}, fit, widths);
     stroke::fill_wide_lines(strokes, a.drawing.wide_lines_mm * kMillimetre, edges_of(a));
     stroke::redip_long_lines(strokes, fit, widths);
     note_widths(stroke::press_to_widths(strokes, widths), fit.fit, console);
+}
+
+std::optional<PlacedDrawing> place_strokes(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
+                                           const Paint& a, Console& console) {
+    std::vector<stroke::StrokeSamples*> drawing;
+    DrawnSize size;
+    const std::optional<PlacedDrawing> placed = place_on_model(strokes, model, a, drawing, size, console);
+    finish_strokes(strokes, drawing, size, a, console);
     return placed;
 }
 

@@ -19,6 +19,11 @@ constexpr double kLeastOn = 0.5;     // cosine of the turn from edge to edge
 constexpr double kBeside = 1e-3;     // of the reach: how far beside an edge its line lies
 constexpr double kPreferEdge = 0.1;  // of the reach, by which a crease must be nearer
 
+}  // namespace
+
+/// Feature edges of one model.
+namespace edges {
+
 /// An edge that is a feature, as its first triangle has it: that lies to its left.
 struct Edge {
     std::array<std::uint32_t, 2> ends;
@@ -27,7 +32,7 @@ struct Edge {
     double angle;  ///< radians between the triangles
 };
 
-std::vector<Edge> feature_edges(const mesh::TriangleMesh& mesh) {
+static std::vector<Edge> feature_edges(const mesh::TriangleMesh& mesh) {
     std::vector<Edge> edges;
     for (std::uint32_t i = 0; i < mesh.n_triangles(); ++i)
         for (std::size_t k = 0; k < 3; ++k) {
@@ -50,9 +55,9 @@ std::vector<Edge> feature_edges(const mesh::TriangleMesh& mesh) {
 }
 
 /// Feature edges by their ends.
-class EdgeWalk {
+class Walk {
   public:
-    EdgeWalk(const mesh::TriangleMesh& mesh, std::vector<Edge> edges)
+    Walk(const mesh::TriangleMesh& mesh, std::vector<Edge> edges)
         : mesh_(mesh), edges_(std::move(edges)), used_(edges_.size(), 0) {
         for (std::size_t e = 0; e < edges_.size(); ++e)
             for (const std::uint32_t v : edges_[e].ends) at_.emplace(v, e);
@@ -74,6 +79,7 @@ class EdgeWalk {
 
     /// The line through an edge, with the normals of the faces on the side of `p`.
     ModelPath line(std::size_t first, const Vec3& p, double beside) {
+        std::ranges::fill(used_, 0);
         used_[first] = 1;
         const auto [a, b] = edges_[first].ends;
         std::vector<Step> steps = follow(a, {first, b});
@@ -171,6 +177,10 @@ class EdgeWalk {
     std::multimap<std::uint32_t, std::size_t> at_;
 };
 
+}  // namespace edges
+
+namespace {
+
 /// Turns a path so that a reader outside sees it run to the right.
 void run_to_right(ModelPath& path) {
     constexpr double kFlat = 0.05;  // of the path's length
@@ -191,13 +201,31 @@ void run_to_right(ModelPath& path) {
 
 }  // namespace
 
+class FeatureLines::Edges : public edges::Walk {
+    using Walk::Walk;
+};
+
+FeatureLines::FeatureLines(const mesh::SurfaceQuery& query)
+    : query_(query), edges_(std::make_unique<Edges>(query.mesh(), edges::feature_edges(query.mesh()))) {}
+
+FeatureLines::~FeatureLines() = default;
+
+double feature_reach(const Box& model) {
+    constexpr double kReach = 0.05, kReachOfModel = 0.1;  // metres; of the diagonal
+    return std::min(kReach, kReachOfModel * model.diagonal());
+}
+
 FeatureLine feature_line(const mesh::SurfaceQuery& query, const Vec3& through, double reach) {
-    EdgeWalk walk(query.mesh(), feature_edges(query.mesh()));
+    return FeatureLines(query).nearest(through, reach);
+}
+
+FeatureLine FeatureLines::nearest(const Vec3& through, double reach) {
+    edges::Walk& walk = *edges_;
     const auto [first, away] = walk.empty() ? std::pair(std::size_t{0}, HUGE_VAL) : walk.nearest(through);
     FeatureLine line{.away = away};
     // A sharp edge is a crease as well, whose middle may seem nearer by a fraction of the sections' spacing.
     if (const double nearer = std::min(reach, away - kPreferEdge * reach); nearer > 0)
-        if (auto crease = crease_line(query, through, nearer); crease && crease->away <= nearer)
+        if (auto crease = crease_line(query_, through, nearer); crease && crease->away <= nearer)
             line = std::move(*crease);
     if (line.path.points.empty()) {
         if (away == HUGE_VAL)

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "writer/layout/text_layout.h"
 
 /// \file
-/// Lines that the shape of a model has: borders, edges, creases. Called by `tuft paint --along edge`.
+/// Lines that the shape of a model has: borders, edges, creases. Called by `tuft paint --along edge` and by the
+/// studio.
 namespace tuft::writer {
 
 /// What a feature line is.
@@ -36,8 +38,24 @@ struct FeatureLine {
 /// of the bend, Σ x Δφ / Σ Δφ over two such lengths of a section across it, φ the direction of the faces. It is
 /// followed in half of those steps to where the bend falls below 7°.
 ///
-/// Throws `Error` where no line is within reach.
+/// Throws `Error` where no line is within reach. Cost: one pass over the triangles.
 FeatureLine feature_line(const mesh::SurfaceQuery& query, const Vec3& through, double reach);
+
+/// The same for one place after the other: the edges of the model are found once.
+class FeatureLines {
+  public:
+    explicit FeatureLines(const mesh::SurfaceQuery& query);
+    ~FeatureLines();
+    FeatureLine nearest(const Vec3& through, double reach);
+
+  private:
+    class Edges;
+    const mesh::SurfaceQuery& query_;
+    std::unique_ptr<Edges> edges_;
+};
+
+/// Returns how far from a place a feature line is looked for: 50 mm, at most a tenth of the model's diagonal. Metres.
+double feature_reach(const Box& model);
 
 /// A crease near a place, as `feature_line` follows it; nothing where there is none within reach.
 std::optional<FeatureLine> crease_line(const mesh::SurfaceQuery& query, const Vec3& through, double reach);
