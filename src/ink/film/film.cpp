@@ -13,6 +13,7 @@
 #include "ink/film/film_step.h"
 #include "ink/film/film_worker.h"
 #include "ink/film/seepage.h"
+#include "ink/film/sheet_flow.h"
 #include "ink/film/still_air.h"
 #include "ink/film/tension.h"
 #include "ink/film/tile/paste.h"
@@ -26,12 +27,8 @@ using namespace wet;
 
 constexpr int kLines = 20;  // of memory asked for at once: as many as the processor waits for
 constexpr float kFilmsPerMicrometre = 0.1f;
-// Seconds of a step by tension.
-constexpr double kLevelEvery = 0.05, kLevelStep = 0.1, kLongestLevelStep = 1.6, kShortestLevelStep = 0.0125;
 constexpr double kPartOfWait = 0.025, kLeastOfLongWait = 1.5, kLongWait = 5;
-// Steps are doubled where Σ curvature² keeps the one part, or no texel changes by so much of its thickness; halved
-// where it keeps but the other. What decays by 1 / (1 + z) in place of e^−z has a rate that is off by z / 2.
-constexpr double kSlow = 0.9, kFast = 0.8, kLittle = 2e-3, kMuch = 5e-3, kVeryMuch = 0.1;
+constexpr double kLevelEvery = 0.05;
 
 /// What lies on a tile and on those around it.
 using Near = std::array<const Sources*, 9>;
@@ -67,20 +64,6 @@ bool all_zero(const Plane& plane) {
 }  // namespace
 
 struct WetFilm::State : TileList {
-    /// Steps by tension.
-    struct LevelSteps {
-        bool in_work = false;         ///< the step in work is one of them
-        double seconds = kLevelStep;  ///< of the next one
-        double shortest = kShortestLevelStep, least = kLevelStep, most = kLongestLevelStep;
-        /// `slower`: how many times as slowly it dries, which is all that moves in a long wait.
-        void set(double least_step, double slower) {
-            const double longer = slower > 1 ? 2 * slower : 1;
-            least = least_step * longer, most = kLongestLevelStep * longer;
-            shortest = slower > 1 ? least : kShortestLevelStep * least / kLevelStep;
-            seconds = std::clamp(seconds, slower > 1 ? least : 0, most);
-        }
-    };
-
     std::vector<std::uint8_t> reported;
     /// [n_slots] of what is dry, film units: found once in an advance, null where it is plain.
     std::vector<std::unique_ptr<Plane>> relief;
@@ -94,8 +77,9 @@ struct WetFilm::State : TileList {
     Tension tension;
     Seepage seepage;
     StillAir air;
+    SheetFlow sheets;
     LevelSteps level_steps;
-    bool seeps = false;  ///< the step in work is one through the pores
+    bool levels = false, seeps = false;  ///< the step in work is one by tension, one through the pores
     std::mutex mutex;
     std::vector<std::unique_ptr<Worker>> workers;  ///< idle ones
 
@@ -128,10 +112,17 @@ struct WetFilm::State : TileList {
         before(slot);
     }
 
-    /// Beads run for the time of a step. Whether any did.
-    bool run_beads(Canvas& canvas, const FilmParams& params, double dt, const BeforeFn& before) {
+    /// Sheets and beads run for the time of a step. Whether any did.
+    bool run_down(Canvas& canvas, const FilmParams& params, double dt, const BeforeFn& before) {
         if (!(glm::length(params.weight.down) > 0)) return false;
-        const std::vector<Drips::Seed> seeds = seeds_of_beads(canvas, params);
+        const std::vector<std::uint32_t> written =
+            sheets.run(canvas, *this, dt, [&](std::uint32_t slot) { report_slot(slot, before); });
+        if (!written.empty()) search_tile(canvas, written);
+        return run_beads(canvas, params, dt, before) || !written.empty();
+    }
+    bool run_beads(Canvas& canvas, const FilmParams& params, double dt, const BeforeFn& before) {
+        const std::vector<Drips::Seed> seeds =
+            seeds_of_beads(canvas, params, [&](std::uint32_t slot, int t) { return sheets.runs_at(slot, t); });
         if (seeds.empty()) return false;
         if (!drips) drips = std::make_unique<Drips>(map, seams, medium().free);
         const std::vector<std::uint32_t> written =
@@ -229,7 +220,7 @@ struct WetFilm::State : TileList {
         ahead.fetch(kLines);
         if (seeps) {
             seepage.flow(static_cast<std::uint32_t>(index), *this, sources, pigments, work, worker.crossing);
-        } else if (level_steps.in_work) {
+        } else if (levels) {
             tension_flow(work, g, tension.tile(index)->grid, step.grip);
             tension.cross_seams(static_cast<std::uint32_t>(index), sources, pigments, step.grip, work, worker.crossing);
         } else {
@@ -388,15 +379,13 @@ struct WetFilm::State : TileList {
     /// they are.
     std::span<const std::uint32_t> going() {
         const auto set = [&](std::uint32_t i, std::uint32_t n) { readers[i].store(n, std::memory_order_relaxed); };
-        if (part != Part::inside && !level_steps.in_work && !seeps) {
+        if (part != Part::inside && !levels && !seeps) {
             for (std::uint32_t i = 0; i < list.size(); ++i) set(i, n_readers[i]);
             return order;
         }
         part_order.clear();
         for (const std::uint32_t i : order)
-            if (seeps                 ? seepage.tile(i) != nullptr
-                : level_steps.in_work ? tension.tile(i) != nullptr
-                                      : beside_seam(list[i].slot))
+            if (seeps ? seepage.tile(i) != nullptr : levels ? tension.tile(i) != nullptr : beside_seam(list[i].slot))
                 part_order.push_back(i);
         for (std::uint32_t i = 0; i < list.size(); ++i) {
             set(i, 0);
@@ -457,7 +446,7 @@ struct WetFilm::State : TileList {
     /// Ripples level for `seconds`, in steps of `level_steps.seconds`, which grows while all is slow.
     void level(Canvas& canvas, const FilmParams& params, double seconds, const Step& last, FilmReport& report) {
         if (!tension.find(*this, relief)) {
-            level_steps.seconds = std::min(2 * level_steps.seconds, level_steps.most);
+            level_steps.grow();
             return;
         }
         const Step rates = still(last);
@@ -467,15 +456,11 @@ struct WetFilm::State : TileList {
             const double dt = left / std::ceil(left / level_steps.seconds * (1 - 1e-9));
             if (sources.empty()) prepare(canvas);
             const Tension::TensionResult solved = tension.solve(*this, sources, dt);
-            level_steps.in_work = true;
+            levels = true;
             step(canvas, params, rates, report.steps | ++n << 48, report);
-            level_steps.in_work = false;
+            levels = false;
             left = dt < left * (1 - 1e-9) ? left - dt : 0;
-            if (solved.bends > kSlow || solved.change < kLittle)
-                level_steps.seconds = std::min(2 * level_steps.seconds, level_steps.most);
-            else if (solved.bends < kFast && solved.change > kMuch)
-                level_steps.seconds = std::max(0.5 * level_steps.seconds,
-                                               solved.change > kVeryMuch ? level_steps.shortest : level_steps.least);
+            level_steps.follow(solved.bends, solved.change);
         }
     }
 
@@ -523,6 +508,7 @@ WetFilm::WetFilm(WetFilm&&) noexcept = default;
 
 void WetFilm::keep_within(FreeFn free) {
     state_->set_free(std::move(free));
+    state_->sheets.forget();
 }
 
 FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& params, const BeforeFn& before,
@@ -537,11 +523,12 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     s.seepage.start(params);
     s.air.start(params, s.map);
     s.set_unevenness(params.unevenness, params.pores.retention);  // fibres sieve
+    s.sheets.start(params, s, params.drying.goes_on);
     s.begin(canvas);
     double beads = 0;  // seconds that they have not run yet
     bool running = glm::length(params.weight.down) > 0;
     // A long wait ends with what is level; how it became so needs not be followed at every moment.
-    const double least = s.level_steps.seconds = std::clamp(kPartOfWait * seconds, kLevelStep, kLeastOfLongWait);
+    const double least = s.level_steps.seconds = std::clamp(kPartOfWait * seconds, LevelSteps::kStep, kLeastOfLongWait);
     double rippled = params.ripples.unlevelled;  // seconds in which ripples have not levelled yet
     for (double left = seconds; left > 0 && !s.list.empty();) {
         if (progress && !progress("drying", 1 - left / seconds)) {
@@ -567,7 +554,7 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
         if (level) rippled = 0;
         beads += dt;
         if (beads > 0.9 * kBeadStep || left == 0) {
-            running = s.run_beads(canvas, params, beads, before);
+            running = s.run_down(canvas, params, beads, before);
             if (running) s.sources.clear();
             beads = 0;
         }

@@ -363,7 +363,8 @@ void TileList::search_tile(const Canvas& canvas, std::span<const std::uint32_t> 
     spread();
 }
 
-std::vector<Drips::Seed> TileList::seeds_of_beads(const Canvas& canvas, const FilmParams& params) const {
+std::vector<Drips::Seed> TileList::seeds_of_beads(const Canvas& canvas, const FilmParams& params,
+                                                  const std::function<bool(std::uint32_t, int)>& in_sheet) const {
     struct Found {
         std::array<std::int32_t, 3> cube;
         float weak, height;
@@ -376,7 +377,7 @@ std::vector<Drips::Seed> TileList::seeds_of_beads(const Canvas& canvas, const Fi
         const Plane& w = *canvas.liquid(tile.slot, Liquid::film);
         const std::size_t first = found.size();
         for (int t = 0; t < kTexels; ++t) {
-            if (w[t] < least) continue;
+            if (w[t] < least || in_sheet(tile.slot, t)) continue;
             const Vec3 at(map.position(tile.slot, t));
             const auto cell = [](double x) { return static_cast<std::int32_t>(std::floor(x / kGrainLength)); };
             const std::array cube{cell(at.x), cell(at.y), cell(at.z)};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <span>
 #include <utility>
@@ -121,8 +122,9 @@ struct TileList {
     /// Updates slots that were written from outside, and adds them to the list.
     void search_tile(const Canvas& canvas, std::span<const std::uint32_t> slots);
     /// Returns the possible starts of beads: in each cube of a grain's length the weakest place, the lowest first,
-    /// so that the layout of the atlas does not matter.
-    std::vector<Drips::Seed> seeds_of_beads(const Canvas& canvas, const FilmParams& params) const;
+    /// so that the layout of the atlas does not matter. None where `in_sheet`.
+    std::vector<Drips::Seed> seeds_of_beads(const Canvas& canvas, const FilmParams& params,
+                                            const std::function<bool(std::uint32_t slot, int texel)>& in_sheet) const;
 
     /// Calls fn with every place in the list whose planes a tile reads, its own among them.
     template <class Fn>

@@ -21,6 +21,9 @@ constexpr double kLimitPart = 0.75, kFaces = 6, kLimitPartOfLinks = 0.5;
 // surface.
 constexpr double kStepOnRelief = 0.2, kStepOfFilm = 0.5;
 constexpr int kMostParts = 64;
+// Steps by tension are doubled where Σ curvature² keeps the one part, or no texel changes by so much of its thickness;
+// halved where it keeps but the other. What decays by 1 / (1 + z) in place of e^−z has a rate that is off by z / 2.
+constexpr double kSlow = 0.9, kFast = 0.8, kLittle = 2e-3, kMuch = 5e-3, kVeryMuch = 0.1;
 
 /// What flows fastest: least seconds in which a tile's part as small as 1 / stiffness of that could
 /// flow off.
@@ -95,6 +98,24 @@ StepChoice choose_step(const FilmParams& p, const TileList& tiles, const StepSta
     out.parts = std::clamp(static_cast<int>(std::ceil(dt * longest)), 2, kMostParts) / 2 * 2;
     out.part = part_of(step, out.parts, beside.stiffness);
     return out;
+}
+
+void LevelSteps::set(double least_step, double slower) {
+    const double longer = slower > 1 ? 2 * slower : 1;
+    least = least_step * longer, most = kLongest * longer;
+    shortest = slower > 1 ? least : kShortest * least / kStep;
+    seconds = std::clamp(seconds, slower > 1 ? least : 0, most);
+}
+
+void LevelSteps::grow() {
+    seconds = std::min(2 * seconds, most);
+}
+
+void LevelSteps::follow(double bends, double change) {
+    if (bends > kSlow || change < kLittle)
+        grow();
+    else if (bends < kFast && change > kMuch)
+        seconds = std::max(0.5 * seconds, change > kVeryMuch ? shortest : least);
 }
 
 }  // namespace tuft::ink::wet

@@ -28,4 +28,18 @@ struct StepState {
 /// `FilmParams::shortest_step`.
 StepChoice choose_step(const FilmParams& p, const TileList& tiles, const StepState& state, double left);
 
+/// Lengths of the steps by tension, seconds.
+struct LevelSteps {
+    static constexpr double kStep = 0.1, kLongest = 1.6, kShortest = 0.0125;
+
+    double seconds = kStep;  ///< of the next one
+    double shortest = kShortest, least = kStep, most = kLongest;
+
+    /// `slower`: how many times as slowly it dries, which is all that moves in a long wait.
+    void set(double least_step, double slower);
+    void grow();
+    /// After a step: `bends`, Σ curvature² over that before it; `change`, the greatest, of the thickness.
+    void follow(double bends, double change);
+};
+
 }  // namespace tuft::ink::wet
