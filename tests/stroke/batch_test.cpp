@@ -6,6 +6,7 @@
 #include "core/system/parallel.h"
 #include "sheet.h"
 #include "stroke/painting/tile_reach.h"
+#include "stroke/session/forecast.h"
 #include "stroke/session/session.h"
 
 /// Strokes painted side by side: whatever the number of threads, the bits are those of one stroke after the other.
@@ -232,6 +233,39 @@ TEST_F(Batch, PlacesOfALiftAreInUseToTheEnd) {
     EXPECT_GT(end, places.back().first + 3) << "in the air";
     EXPECT_EQ(places.back().last, end);
     EXPECT_LT(places.front().last, end);
+}
+
+// A batch of long strokes would hold all of their poses at once, 25 kB each.
+TEST(StrokeForecast, HoldsNoMoreThanItsBudgetAndIsTheSame) {
+    brush::Tuft tuft = brush::make_tuft(brush::load_preset("wolf-small"), 1);
+    std::vector<brush::Pose> path;
+    for (int i = 0; i < 400; ++i)
+        path.push_back(
+            {.position = {1e-4 * i - 0.02, 0, 0.9 * tuft.preset.length}, .rotation = {1, 0, 0, 0}, .time = 5e-3 * i});
+    const auto forces = [&](std::size_t most, std::size_t& held) {
+        ForecastBudget budget{.most = most};
+        std::vector<Vec3> found;
+        {
+            StrokeForecast forecast(tuft, path, *model().query, {});
+            forecast.compute(false, budget);
+            for (const brush::Pose& pose : path) {
+                PoseForecast* ready = forecast.next(pose, tuft, false);
+                if (!ready) break;
+                found.push_back(ready->contact.tuft.force);
+                held = std::max<std::size_t>(held, budget.held);
+            }
+        }
+        EXPECT_EQ(budget.held, 0u);
+        return found;
+    };
+    std::size_t all = 0, few = 0;
+    tuft.wetness = 1;
+    const std::vector<Vec3> whole = forces(std::size_t{1} << 40, all), bounded = forces(1, few);
+    EXPECT_EQ(whole.size(), path.size());
+    EXPECT_GT(glm::length(whole.back()), 1e-3) << "it touches";
+    EXPECT_EQ(whole, bounded);
+    // Two parts of 32 poses of 400, the one that is used and the next; the first ones have less contact.
+    EXPECT_LT(few, all / 5);
 }
 
 }  // namespace

@@ -45,7 +45,9 @@ constexpr std::size_t kStrokesPerThread = 32;
 // Strokes that wait for each other's tiles keep so many threads at work. With more, footprints are computed before the
 // ink of the strokes below is there, those that dry hair will not use, too.
 constexpr int kFewThreads = 4;
-constexpr std::size_t kSamplesPerThread = 100'000;  // of a batch: bounds the poses that are held
+constexpr std::size_t kSamplesPerThread = 100'000;  // of a batch
+// Bytes that forecasts hold: some 500 poses of a round brush, 100 of a wide one.
+constexpr std::size_t kForecastPerThread = std::size_t{16} << 20;
 
 // Ink of a stamp is deposited up to 8 stamps later (StampBatch).
 constexpr double kLeastPart = 16;  // poses of the resampled path
@@ -122,7 +124,9 @@ bool paints_beside_others(const JournalEntry& entry) {
     return stroke->settings.dip == DipMode::each && stroke->settings.film != FilmModel::wet;
 }
 
-StrokeBatch::StrokeBatch(PaintedModel& painted) : painted_(painted) {}
+StrokeBatch::StrokeBatch(PaintedModel& painted) : painted_(painted), budget_(std::make_unique<ForecastBudget>()) {
+    budget_->most = kForecastPerThread * static_cast<std::size_t>(thread_count());
+}
 
 StrokeBatch::~StrokeBatch() = default;
 
@@ -200,7 +204,7 @@ void StrokeBatch::paint_step(Stroke& stroke, std::size_t step, const ProgressFn&
     if (step == 0) {
         begin_path(session, stroke.path, progress);
         if (std::unique_ptr<StrokeForecast> forecast = session.forecast(poses)) {
-            forecast->compute(thread_count() > kFewThreads);
+            forecast->compute(thread_count() > kFewThreads, *budget_);
             session.use(std::move(forecast));
         }
         return;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,8 @@
 /// a part waits until every earlier stroke is done with the tiles that it may use. A stroke that leaves the tiles
 /// planned for it is taken back with those after it, and painted by itself. The bits are those of one after the other.
 namespace tuft::stroke {
+
+struct ForecastBudget;
 
 /// Returns whether an entry can be painted in a batch. A brush that persists, wet ink and paste depend on more than
 /// tiles. Layer and presets are checked when it is planned.
@@ -52,6 +55,7 @@ class StrokeBatch {
     void take_back();
 
     PaintedModel& painted_;
+    std::unique_ptr<ForecastBudget> budget_;
     std::vector<Stroke> strokes_;
 };
 

@@ -1,6 +1,7 @@
 #include "stroke/session/forecast.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "core/system/parallel.h"
@@ -17,6 +18,32 @@ constexpr std::size_t kClosedAtOnce = 8;  // poses whose footprints are computed
 // Up to so many threads the one that bends ahead also computes the footprints: else it waits, and those who deposit ink
 // have them to do.
 constexpr int kThreadsForOneCloser = 2;
+
+template <class T>
+std::size_t bytes_of(const Recycled<T>& all) {
+    return std::bit_ceil(all.capacity() * sizeof(T));  // as blocks are
+}
+
+std::size_t bytes_of_trails(const Recycled<footprint::Trail>& trails) {
+    std::size_t bytes = bytes_of(trails);
+    for (const footprint::Trail& trail : trails) {
+        bytes += bytes_of(trail.cuts) + bytes_of(trail.along);
+        for (const footprint::TrailOpening& opening : trail.openings) bytes += bytes_of(opening.width);
+    }
+    return bytes;
+}
+
+/// Bytes that a pose holds, but for what is small.
+std::size_t bytes_of_pose(const PoseForecast& pose) {
+    std::size_t bytes = sizeof pose + bytes_of(pose.contact.planes) + bytes_of_trails(pose.hair.trails) +
+                        bytes_of_trails(pose.hair.leapt);
+    for (const brush::Branch& branch : pose.contact.tuft.branches) bytes += bytes_of(branch.sections);
+    for (const auto& planes : pose.contact.branch_planes) bytes += bytes_of(planes);
+    for (const footprint::Outline& o : pose.hair.outlines)
+        bytes += bytes_of(o.left) + bytes_of(o.right) + bytes_of(o.control);
+    if (pose.hair.closed) bytes += bytes_of(pose.hair.closed->coverage);
+    return bytes;
+}
 
 bool same(const brush::Pose& a, const brush::Pose& b) {
     return a.position == b.position && a.rotation == b.rotation && a.time == b.time;
@@ -75,8 +102,28 @@ void StrokeForecast::compute_part(std::size_t k, bool closes) {
     }
 }
 
-void StrokeForecast::compute(bool closes) {
-    for (std::size_t k = 0; k < parts_.size() && !hair_.split; ++k) compute_part(k, closes);
+StrokeForecast::~StrokeForecast() {
+    ahead_.reset();
+    for (Part& part : parts_) release(part);
+}
+
+void StrokeForecast::release(Part& part) {
+    if (budget_) budget_->held -= part.bytes;
+    part = {};
+}
+
+void StrokeForecast::compute_within_budget() {
+    Part& part = parts_[computed_];
+    compute_part(computed_++, closes_);
+    for (const PoseForecast& pose : part.poses) part.bytes += bytes_of_pose(pose);
+    budget_->held += part.bytes;
+}
+
+void StrokeForecast::compute(bool closes, ForecastBudget& budget) {
+    budget_ = &budget;
+    closes_ = closes;
+    while (computed_ < parts_.size() && !hair_.split && (computed_ == 0 || budget.held < budget.most))
+        compute_within_budget();
 }
 
 void StrokeForecast::compute_ahead() {
@@ -116,9 +163,10 @@ PoseForecast* StrokeForecast::next(const brush::Pose& pose, const brush::Tuft& h
     if (next_ == path_.size() || hair.wetness != 1) return nullptr;
     const std::size_t k = next_ / part_poses_, at = next_ % part_poses_;
     if (ahead_) ahead_->wait(k);
+    while (budget_ && computed_ <= k && !hair_.split) compute_within_budget();
     Part& part = parts_[k];
     if (at >= part.poses.size() || !same(part.poses[at].pose, pose)) return nullptr;
-    if (at == 0 && k > 0) parts_[k - 1] = {};
+    if (at == 0 && k > 0) release(parts_[k - 1]);
     if (ahead_ && closes && at % kClosedAtOnce == 0) close_together(part, at);
     ++next_;
     return &part.poses[at];

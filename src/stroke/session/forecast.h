@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -24,6 +26,12 @@ struct PoseForecast {
     HairShape hair;  ///< of a tuft that touches
 };
 
+/// Memory that the forecasts of a batch hold together, about. It must outlive them.
+struct ForecastBudget {
+    std::size_t most = 0;  ///< bytes, from which on none computes ahead
+    std::atomic<std::size_t> held{0};
+};
+
 /// The hair of one stroke along its path.
 ///
 /// Bending depends on the ink in two respects. The wetness is 1 from `kWetFullness` on. Splitting comes sooner with
@@ -41,12 +49,14 @@ class StrokeForecast {
     /// `path`: poses of the resampled path. `tuft`: as the stroke begins. Computes nothing yet.
     StrokeForecast(brush::Tuft tuft, std::vector<brush::Pose> path, const mesh::SurfaceQuery& surface,
                    const Options& options);
+    ~StrokeForecast();
     StrokeForecast(const StrokeForecast&) = delete;
     StrokeForecast& operator=(const StrokeForecast&) = delete;
 
-    /// Computes all poses, with `closes` and their footprints of wet hair, which hair that dries on its way does not
-    /// need from there on. Cost: that of bending at every pose, and of outlines. Once, before `next`.
-    void compute(bool closes);
+    /// Computes poses up to the end of the path or of the budget, some at least; `next` computes those after them.
+    /// With `closes` their footprints of wet hair, too, which hair that dries on its way does not need from there on.
+    /// Cost: that of bending at every pose, and of outlines. Once, before `next`.
+    void compute(bool closes, ForecastBudget& budget);
     /// Instead of `compute`: lets another thread compute poses while `next` returns those before, some 100 ahead.
     void compute_ahead();
     /// Instead of both: appends poses to the path, and lets another thread compute them all while `next` returns those
@@ -66,11 +76,14 @@ class StrokeForecast {
         brush::Tuft hair;
         contact::Memory memory;
         std::vector<PoseForecast> poses;  ///< up to where the tuft splits
+        std::size_t bytes = 0;            ///< of the budget
     };
     double seconds_before(std::size_t i) const;
     contact::Result bend(brush::Tuft& hair, contact::Memory& memory, std::size_t i) const;
     void cut_path(std::size_t part_poses);
     void compute_part(std::size_t k, bool closes);
+    void compute_within_budget();
+    void release(Part& part);
     void close_together(Part& part, std::size_t from) const;
 
     const mesh::SurfaceQuery& surface_;
@@ -83,7 +96,10 @@ class StrokeForecast {
     brush::Tuft hair_;  ///< after the poses computed so far
     contact::Memory memory_;
     LastHair last_;
-    std::unique_ptr<WorkAhead> ahead_;  ///< uses the others; null: all is computed
+    std::unique_ptr<WorkAhead> ahead_;  ///< uses the others; null: no thread computes ahead
+    ForecastBudget* budget_ = nullptr;  ///< of a batch
+    std::size_t computed_ = 0;          ///< parts, in a batch
+    bool closes_ = false;               ///< likewise
 };
 
 }  // namespace tuft::stroke
