@@ -55,7 +55,9 @@ TEST_F(ModelFiles, AUnitThatIsSaidGoesBeforeTheOneThatTheFileStates) {
         EXPECT_NE(cad.err.find(note), std::string::npos) << cad.err;
     const Ran plain = tuft("inspect --unit mm --up z " + model("bowl.ply"));
     EXPECT_EQ(plain.err, "");
-    EXPECT_EQ(tuft("inspect --unit mm " + corpus("stp/box.stp")).err, "") << "as it states";
+    const Ran agrees = tuft("inspect --json --unit mm " + corpus("stp/box.stp"));
+    EXPECT_EQ(agrees.err, "");
+    EXPECT_EQ(json::parse(agrees.out)["unit_note"], "as the file says");
 }
 
 // A GLB whose numbers are millimetres: its project, and the next version of the file, are in millimetres too.
@@ -70,6 +72,12 @@ TEST_F(ModelFiles, AProjectKeepsTheUnitThatWasSaidOfItsModel) {
     EXPECT_NE(again.err.find("wrong.glb is read in millimetres (--unit), not in metres as it states"),
               std::string::npos)
         << again.err;
+    // A unit that agrees with the file says nothing of the next one, nor does one of a format that states it.
+    const std::string of_step =
+        "paint " + corpus("stp/box.stp") + " --on top --atlas-size 256 --no-cache --strokes " + strokes + " --project ";
+    ASSERT_EQ(tuft(of_step + path("stated.tuft") + " --unit mm").status, 0);
+    const Ran revised = tuft("replay --json " + path("stated.tuft") + " --no-cache --model " + path("wrong.glb"));
+    EXPECT_EQ(revised.err.find("as it states"), std::string::npos) << revised.err;
     const Ran stated = tuft("replay --json " + path("p.tuft") + " --unit m --model " + path("wrong.glb"));
     EXPECT_EQ(stated.err.find("as it states"), std::string::npos) << stated.err;
 }

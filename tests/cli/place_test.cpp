@@ -141,7 +141,7 @@ TEST_F(Place, ADrawingFarLargerThanTheModelIsReported) {
         const Ran ran = tuft("paint " + path("box.obj") + " --atlas-size 256 --strokes " + path("lines.inkml") +
                              " --place 0,-30,0 --place-width " + width);
         EXPECT_EQ(ran.status, 0) << ran.err;
-        EXPECT_EQ(ran.err.find("the drawing is 400 mm large, the model 107.7 mm") != std::string::npos, reported)
+        EXPECT_EQ(ran.err.find("the model is 108 mm across, the drawing 412 mm") != std::string::npos, reported)
             << ran.err;
     }
 }

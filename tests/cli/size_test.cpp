@@ -87,7 +87,12 @@ TEST_F(Size, AreasOnAModelInAMistakenUnitAreReported) {
         return ran.err;
     };
     const std::string doubt = "is its unit another one? (see --unit";
-    EXPECT_NE(painted(80 / 25.4).find(doubt), std::string::npos);
+    // A square of 60 mm has a diagonal of 85 mm, a cube of 15 mm one of 26 mm: a third of it.
+    for (const double side : {80 / 25.4, 15.0}) {
+        const std::string said = painted(side);
+        EXPECT_NE(said.find(doubt), std::string::npos) << said;
+        EXPECT_EQ(said.find("meets no surface"), said.rfind("meets no surface")) << "once: " << said;
+    }
     EXPECT_EQ(painted(80).find(doubt), std::string::npos);
     for (const double side : {80 / 25.4, 80 * 25.4}) {
         const Ran ran = tuft("replay " + path("out.tuft") + " --unit mm --no-cache --model " + cube(side));

@@ -166,6 +166,21 @@ TEST_F(Cad, AnIgesFileStatesItsUnit) {
     }
 }
 
+// A tolerance is that of the model, whatever unit the numbers are said to be in.
+TEST_F(Cad, AChordIsOfTheModelInTheUnitThatIsSaid) {
+    const TopoDS_Shape cylinder = BRepPrimAPI_MakeCylinder(50, 80).Shape();
+    const fs::path small = step(cylinder, "small.step");
+    BRepBuilderAPI_Transform scaled(cylinder, [] {
+        gp_Trsf t;
+        t.SetScale(gp_Pnt(0, 0, 0), 10);
+        return t;
+    }());
+    const std::size_t wanted = read_model(step(scaled.Shape(), "large.step"), {.chord = 1e-4}).n_polygons();
+    EXPECT_EQ(read_model(small, {.chord = 1e-4, .unit = "cm"}).n_polygons(), wanted);
+    EXPECT_EQ(read_model(small, {.chord = 1e-4, .unit = "mm"}).n_polygons(),
+              read_model(small, {.chord = 1e-4}).n_polygons());
+}
+
 // n chords of a circle of radius r miss its length by (π/n)²/6, and its arc by c = r (π/n)²/2: the area of the side is
 // short by c / 3r.
 TEST_F(Cad, ACylindersAreaConvergesWithTheFirstOrderOfTheChord) {

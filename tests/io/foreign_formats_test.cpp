@@ -225,10 +225,15 @@ TEST(ForeignFormats, AUnitThatIsSaidGoesBeforeTheOneThatTheFileStates) {
                       x3d = replaced(text_of(corpus("x3d/box.x3d")), "</head>",
                                      "<unit category='length' name='foot' conversionFactor='0.3048'/></head>");
     folder.write("inch.dae", replaced(dae, "<unit name=\"meter\" meter=\"1\"", "<unit meter = '0.0254' name=\"i\""));
+    folder.write("centimetre.dae",
+                 replaced(dae, "<unit name=\"meter\" meter=\"1\"", "<unit name=\"centimeter\" meter=\"0.01\""));
+    folder.write("meter.dae", replaced(dae, "<unit name=\"meter\" meter=\"1\"", "<unit  name='meter' meter='2.54e-2'"));
     folder.write("none.dae", replaced(dae, "<unit name=\"meter\" meter=\"1\"/>", ""));
     const std::vector<std::pair<fs::path, double>> files{
-        {corpus("fbx/text.fbx"), 0.0254}, {corpus("3mf/materials.3mf"), 0.0254},   {folder.path / "inch.dae", 0.0254},
-        {folder.path / "none.dae", 1},    {folder.write("foot.x3d", x3d), 0.3048}, {corpus("gltf/binary.glb"), 1}};
+        {corpus("fbx/text.fbx"), 0.0254},        {corpus("3mf/materials.3mf"), 0.0254},
+        {folder.path / "inch.dae", 0.0254},      {folder.path / "none.dae", 1},
+        {folder.path / "centimetre.dae", 0.01},  {folder.path / "meter.dae", 0.0254},
+        {folder.write("foot.x3d", x3d), 0.3048}, {corpus("gltf/binary.glb"), 1}};
     for (const auto& [path, stated] : files) {
         const mesh::PolygonSoup soup = read_model(path);
         EXPECT_NEAR(soup.stated_unit / stated, 1, 1e-6) << path << ": floats";

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "app/widgets/file_list.h"
 #include "core/text/units.h"
@@ -139,6 +140,12 @@ bool cad_rows(Ui& ui, io::CadReading& cad) {
     return !(cad == before);
 }
 
+/// The chord tolerance is in millimetres of the model. Returns true when the file is to be read anew for it.
+bool scale_chord(OpenOptions& options) {
+    const std::string unit = options.frame.unit_overrides ? options.frame.unit : "";
+    return std::exchange(options.cad.unit, unit) != unit && options.cad.chord > 0;
+}
+
 /// Texels, material and sides of the model that is made of a file. `area`: m².
 void model_rows(Session& s, const mesh::MeshSummary& m, double area) {
     Ui& ui = s.ui;
@@ -183,7 +190,8 @@ void open_dialog(Session& s) {
     fact(ui, "Size", print("%.1f \xc3\x97 %.1f \xc3\x97 %.1f mm", size.x, size.y, size.z));
     fact(ui, "Triangles", grouped(m.n_triangles));
     frame_rows(ui, in, s.project.options.frame);
-    const bool reread = io::is_cad_file(in.path) && cad_rows(ui, s.project.options.cad);
+    const bool reread =
+        io::is_cad_file(in.path) && (cad_rows(ui, s.project.options.cad) || scale_chord(s.project.options));
     model_rows(s, m, m.area * factor * factor);
     ui.heading("Checked and repaired");
     if (in.defects.empty()) ui.note(ui.tr("The mesh is sound; nothing had to be repaired."));

@@ -30,7 +30,8 @@ struct Inspected {
 
 /// Choices of the opening dialog.
 struct OpenOptions {
-    FileFrame frame;  ///< of the model file
+    FileFrame frame;               ///< of the model file
+    std::filesystem::path framed;  ///< the file that `frame` was chosen for
     std::uint32_t atlas_size = 2048;
     std::string substrate = "porcelain";
     bool own_colours = true;    ///< shows the model's own colours, if any

@@ -203,6 +203,8 @@ void StrokePainter::paint_group(std::vector<stroke::JournalEntry> entries, const
     };
     if (const Message fault = stroke::size_fault(all, length_of, *context_.work.model->query); !fault.empty())
         throw Error(Message("The model does not suit the drawing: {}", fault));
+    if (const Message doubt = stroke::size_doubt(all, *context_.work.model->query); !doubt.empty())
+        context_.outbox.report(doubt);
     for (const stroke::JournalEntry& entry : all) context_.work.document->check_size(entry);
     context_.history.undone.clear();
     context_.history.done.push_back({});

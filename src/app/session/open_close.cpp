@@ -72,6 +72,10 @@ void take_inspected(ProjectState& project, Inspected inspected, const PaintThrea
     const mesh::MeshSummary& m = inspected.summary;
     const bool revises = !project.revision.source.empty();
     FileFrame& frame = project.options.frame;
+    if (inspected.path == std::exchange(project.options.framed, inspected.path)) {  // read anew with other options
+        project.inspected = std::move(inspected);
+        return;
+    }
     // A revised file has the unit of the one before, where that stated none or a wrong one.
     const bool keeps = revises && work && (work->frame().unit_overrides || !io::states_unit(work->source()));
     if (!keeps) frame.unit = m.unit.unit;
@@ -106,6 +110,7 @@ void open_path(Session& s, const fs::path& path) {
         s.project.opening.load(path, s.project.recovery.note.new_project(path.stem().string()));
     } else {
         s.project.options.cad = {};
+        s.project.options.framed.clear();
         s.project.opening.inspect(path);
     }
 }

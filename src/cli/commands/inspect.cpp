@@ -264,7 +264,7 @@ MeshFacts mesh_facts(const Inspect& a, Console& console) {
     const mesh::UnitGuess guess = mesh::guess_unit(bounds);
     FileReading how = a;
     if (!io::metres_per_unit(soup, a.unit)) how.unit = guess.unit;
-    const bool stated = soup.stated_unit > 0;
+    const bool stated = soup.stated_unit > 0, overridden = io::overrides_unit(soup, a.unit);
     mesh::RepairOptions options = repair_of(soup, a.file, how, console);
     options.progress = console.progress();
     mesh::Surface surface;
@@ -275,7 +275,7 @@ MeshFacts mesh_facts(const Inspect& a, Console& console) {
     }
     MeshFacts facts{
         .summary = mesh::summarise(surface, options.metres_per_unit), .uvs = {}, .quality = {}, .uv_notes = {}};
-    if (stated && a.unit.empty())
+    if (stated && !overridden)
         facts.summary.unit = {.unit = "m", .metres_per_unit = 1, .second = {}, .sentence = "as the file says"};
     else if (stated)
         facts.summary.unit = {.unit = a.unit,

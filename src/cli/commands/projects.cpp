@@ -131,7 +131,9 @@ stroke::Model replay_model(const Replay& a, OpenProject& project, Console& conso
     if (surface.pages == 0) surface.pages = project.model.atlas.pages;
     if (!a.model.empty()) {
         if (surface.atlas_size == 0 && surface.texel_size_mm == 0) surface.atlas_size = project.model.atlas.page_size();
-        Loaded revised = load_model(a.model, surface, console, &project.frame);
+        FileFrame former = project.frame;
+        if (!former.unit_overrides && io::states_unit(project.source)) former.unit.clear();  // says nothing of others
+        Loaded revised = load_model(a.model, surface, console, &former);
         project.frame = revised.frame;
         return std::move(revised.model);
     }

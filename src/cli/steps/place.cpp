@@ -33,8 +33,6 @@ void note_widths(const stroke::WidthMismatch& m, bool fitted, Console& console) 
         fitted ? "no size of it fits; another --brush may" : "--fit-brush takes a size of it that fits"));
 }
 
-constexpr double kTooLarge = 3;  // diagonals of the model
-
 /// A point for the middle of a drawing, and the normal that it is laid out across.
 struct Spot {
     mesh::SurfacePoint at;
@@ -158,12 +156,6 @@ std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& s
     placed.normal = spot.normal;
     placed.size = scale * Vec2(area.size());
     if (a.place.at_mm.empty()) note_placed(placed, a, area, scale, console);
-    if (const double large = scale * std::max(area.size().x, area.size().y), whole = model.mesh->bounds.diagonal();
-        large > kTooLarge * whole)
-        console.note(
-            fmt::format("the drawing is {:.4g} mm large, the model {:.4g} mm: most of it meets no surface (see "
-                        "--place-width, --unit)",
-                        large / kMillimetre, whole / kMillimetre));
     const stroke::SurfaceMapping first =
         drawing.empty() ? areas.front()->placement.mapping : drawing.front()->placement.mapping;
     const stroke::DrawingPlace place{placement_at(spot, a, first == stroke::SurfaceMapping::project),

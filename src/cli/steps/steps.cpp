@@ -36,7 +36,8 @@ io::CadReading cad_reading(const fs::path& path, const FileReading& how) {
     if ((how.chord_mm > 0 || !how.groups.empty()) && io::is_model_file(path) && !io::is_cad_file(path))
         throw UsageError("--chord and --groups are for STEP and IGES files, and " + path.string() + " is none");
     return {.chord = how.chord_mm * kMillimetre,
-            .groups = how.groups == "faces" ? io::CadGroups::faces : io::CadGroups::bodies};
+            .groups = how.groups == "faces" ? io::CadGroups::faces : io::CadGroups::bodies,
+            .unit = how.unit};
 }
 
 stroke::ModelOptions model_options(const Surface& s, Console& console) {
@@ -79,14 +80,14 @@ std::string unit_name(double metres) {
 
 Read read_file(const fs::path& path, const FileReading& how, const FileFrame* former, mesh::RepairOptions& repair,
                Console& console) {
-    report(repair.progress, "reading", 0);
-    Read read{io::read_model(path, cad_reading(path, how)), {}};
-    report(repair.progress, "reading", 1);
-    const bool stated = read.soup.stated_unit > 0;
     FileReading known = how;
-    if (former && known.unit.empty() && (!stated || former->unit_overrides)) known.unit = former->unit;
+    if (former && known.unit.empty() && former->unit_overrides) known.unit = former->unit;
+    report(repair.progress, "reading", 0);
+    Read read{io::read_model(path, cad_reading(path, known)), {}};
+    report(repair.progress, "reading", 1);
+    if (former && known.unit.empty() && read.soup.stated_unit == 0) known.unit = former->unit;
     if (former && known.up.empty() && former->y_up && !read.soup.turned_up) known.up = "y";
-    read.frame.unit_overrides = stated && !known.unit.empty();
+    read.frame.unit_overrides = io::overrides_unit(read.soup, known.unit);
     if (!io::metres_per_unit(read.soup, known.unit)) {
         Box bounds;
         for (const Vec3& p : read.soup.points) bounds.add(p);
@@ -119,7 +120,7 @@ mesh::RepairOptions repair_of(const mesh::PolygonSoup& soup, const fs::path& pat
     repair.y_up = how.up == "y" && !soup.turned_up;
     if (!how.sides.empty()) repair.sides = mesh::open_sides_of(how.sides);
     const std::string name = path.filename().string();
-    if (soup.stated_unit > 0 && std::abs(repair.metres_per_unit - 1) > 1e-6)
+    if (io::overrides_unit(soup, how.unit))
         console.note(fmt::format("{} is read in {} (--unit), not in {} as it states: {:g} times as large", name,
                                  unit_name(*metres_per(how.unit)), unit_name(soup.stated_unit),
                                  repair.metres_per_unit));

@@ -48,19 +48,33 @@ double fbx_unit(const aiScene& scene) {
     return 0.01 * (centimetres > 0 && std::isfinite(centimetres) ? centimetres : 1);
 }
 
+/// Value of an attribute of an XML element, whose name and attributes are `tag`.
+std::string_view attribute_of(std::string_view tag, std::string_view name) {
+    constexpr std::string_view kBlank = " \t\r\n";
+    const auto skip_to = [&](std::size_t at) { tag.remove_prefix(std::min(at, tag.size())); };
+    skip_to(tag.find_first_of(kBlank));
+    while (!tag.empty()) {
+        skip_to(tag.find_first_not_of(kBlank));
+        const std::string_view word = tag.substr(0, tag.find_first_of(" \t\r\n="));
+        skip_to(tag.find_first_of("\"'"));
+        if (tag.empty()) break;
+        const std::string_view value = tag.substr(1, tag.find(tag[0], 1) - 1);
+        if (word == name) return value;
+        skip_to(value.size() + 2);
+    }
+    return {};
+}
+
 /// Metres in the unit that the <asset> of a DAE file states, which Assimp applies and does not tell; metres where it
 /// states none.
 double dae_unit(std::string_view text) {
-    const auto after = [&](std::string_view words) {
-        const std::size_t at = text.find(words);
-        text = at == text.npos ? std::string_view() : text.substr(at + words.size());
-    };
-    after("<asset");
-    text = text.substr(0, text.find("</asset>"));
-    after("<unit");
-    text = text.substr(0, text.find('>'));
-    after("meter");
-    text = text.substr(std::min(text.size(), text.find_first_not_of(" \t\r\n=\"'")));
+    const std::size_t asset = text.find("<asset");
+    if (asset == text.npos) return 1;
+    text = text.substr(asset, text.find("</asset>", asset) - asset);
+    const std::size_t unit = text.find("<unit");
+    if (unit == text.npos) return 1;
+    text = attribute_of(text.substr(unit, text.find('>', unit) - unit), "meter");
+    text = text.substr(std::min(text.size(), text.find_first_not_of(" +")));
     double metres = 1;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), metres);
     return error == std::errc() && metres > 0 && std::isfinite(metres) ? metres : 1;

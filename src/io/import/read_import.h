@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "mesh/read/polygon_soup.h"
@@ -21,6 +22,7 @@ enum class CadGroups { bodies, faces };
 struct CadReading {
     double chord = 0;  ///< greatest distance between surface and triangles, about, metres; 0: 2e-4 of the diagonal
     CadGroups groups = CadGroups::bodies;
+    std::string unit = {};  ///< in which `read_model` reads the file's numbers, "mm" and so on; empty: as it states
 
     bool operator==(const CadReading&) const = default;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstring>
 #include <string>
 #include <string_view>
@@ -74,6 +75,16 @@ std::optional<Format> by_content(std::string_view bytes) {
     return std::nullopt;
 }
 
+/// A chord tolerance is in metres of the model, the reader's in those that the file states, which is known then.
+mesh::PolygonSoup read_cad_in(CadFormat format, const std::vector<char>& bytes, const std::filesystem::path& path,
+                              const CadReading& how) {
+    mesh::PolygonSoup soup = read_cad(format, bytes, path, how);
+    if (how.chord <= 0 || !overrides_unit(soup, how.unit)) return soup;
+    CadReading scaled = how;
+    scaled.chord /= *metres_per_unit(soup, how.unit);
+    return read_cad(format, bytes, path, scaled);
+}
+
 mesh::PolygonSoup read_polygons(Format format, const std::vector<char>& bytes, const std::filesystem::path& path,
                                 const CadReading& cad) {
     switch (format) {
@@ -99,9 +110,9 @@ mesh::PolygonSoup read_polygons(Format format, const std::vector<char>& bytes, c
         case Format::vrml:
             return read_vrml(bytes, path);
         case Format::step:
-            return read_cad(CadFormat::step, bytes, path, cad);
+            return read_cad_in(CadFormat::step, bytes, path, cad);
         case Format::iges:
-            return read_cad(CadFormat::iges, bytes, path, cad);
+            return read_cad_in(CadFormat::iges, bytes, path, cad);
     }
     return {};
 }
@@ -138,9 +149,15 @@ mesh::PolygonSoup read_model(const std::filesystem::path& path, const CadReading
     return soup;
 }
 
+bool overrides_unit(const mesh::PolygonSoup& soup, const std::string& unit) {
+    constexpr double kSame = 1e-6;  // FBX stores floats
+    const std::optional<double> said = metres_per(unit);
+    return said && soup.stated_unit > 0 && std::abs(*said / soup.stated_unit - 1) > kSame;
+}
+
 std::optional<double> metres_per_unit(const mesh::PolygonSoup& soup, const std::string& unit) {
     const std::optional<double> said = metres_per(unit);
-    if (soup.stated_unit > 0) return said ? *said / soup.stated_unit : 1.0;  // points are in metres
+    if (soup.stated_unit > 0) return overrides_unit(soup, unit) ? *said / soup.stated_unit : 1.0;  // points in metres
     return said;
 }
 

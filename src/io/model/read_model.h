@@ -43,4 +43,7 @@ bool is_cad_file(const std::filesystem::path& path);
 /// there: OBJ, PLY, STL, OFF and VRML 2.0 (in metres by the standard, in millimetres by CAD) state none.
 std::optional<double> metres_per_unit(const mesh::PolygonSoup& soup, const std::string& unit = {});
 
+/// Returns true where `unit` is another one than the file states.
+bool overrides_unit(const mesh::PolygonSoup& soup, const std::string& unit);
+
 }  // namespace tuft::io

@@ -24,6 +24,7 @@ constexpr double kLeastMove = 1e-3,
 constexpr double kStretch = 1.25;          // times as long, or short
 constexpr double kPiece = 5e-3;            // metres of path that are measured together
 constexpr double kTooSmall = 0.25;         // times as large as the former model: a unit that was mistaken is less
+constexpr double kTooLarge = 3;            // times as large as the model: a drawing
 constexpr double kTouch = 1e-4;            // metres that a single touch counts as
 constexpr double kRingStep = 2e-3;         // metres between points of a ring
 constexpr double kAllRingPoints = 20'000;  // of all areas; where there are more, they are farther apart
@@ -296,7 +297,7 @@ Message size_doubt(const std::vector<JournalEntry>& entries, const mesh::Surface
     const Box areas = bounds_of_areas(entries);
     if (!areas.empty()) drawing.add(areas.lo), drawing.add(areas.hi);
     const double across = model.mesh().bounds.diagonal();
-    if (drawing.empty() || across >= kTooSmall * drawing.diagonal()) return {};
+    if (drawing.empty() || kTooLarge * across >= drawing.diagonal()) return {};
     return Message(
         "the model is {} mm across, the drawing {} mm, and most of it meets no surface; is its unit another one?",
         millimetres(across), millimetres(drawing.diagonal()));

@@ -68,7 +68,7 @@ Message size_fault(const std::vector<JournalEntry>& entries,
 /// that was scaled.
 Message size_doubt(const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised);
 
-/// The same of new strokes and areas: the model's diagonal is less than a quarter of the drawing's, as placed.
+/// The same of new strokes and areas: the drawing's diagonal, as placed, is more than three times the model's.
 Message size_doubt(const std::vector<JournalEntry>& entries, const mesh::SurfaceQuery& model);
 
 /// What a journal was made on, and what it comes to lie on. The references must outlive it.
