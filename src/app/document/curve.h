@@ -17,6 +17,8 @@ struct CurvePoint {
     Vec3 position{0};       ///< metres, on the surface
     Vec3 outward{0, 0, 1};  ///< unit, towards the eye that placed it; the curve is projected against it
     double pressure = 1;    ///< factor on the hand's pressure
+
+    bool operator==(const CurvePoint&) const = default;
 };
 
 /// Course of the pressure along a curve.

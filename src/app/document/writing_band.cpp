@@ -38,8 +38,13 @@ WritingBand lay_band(const Writing& w, const BandSurface& surface, const Vec3& a
 
 std::vector<std::vector<PreviewPoint>> preview_lines(const mesh::SurfaceQuery& query, const Writing& w,
                                                      const WritingBand& on, std::size_t most) {
-    constexpr std::size_t kLeast = 24;  // of a copy
-    const std::vector<std::vector<Vec2>> drawn = drawn_lines(w.form());
+    constexpr std::size_t kLeast = 24;       // of a copy
+    constexpr std::size_t kMostLines = 600;  // a ghost follows the cursor: of more, each copy is a frame
+    std::vector<std::vector<Vec2>> drawn = drawn_lines(w.form());
+    if (drawn.size() * on.places.size() > kMostLines) {
+        const Vec2 lo(w.form().box.lo), hi(w.form().box.hi);
+        drawn = {{lo, {hi.x, lo.y}, hi, {lo.x, hi.y}, lo}};
+    }
     const std::size_t each = std::max(kLeast, most / on.places.size());
     std::vector<std::vector<PreviewPoint>> all;
     for (const writer::BandPlace& place : on.places) {

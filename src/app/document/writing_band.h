@@ -34,7 +34,8 @@ struct BandSurface {
 /// where there is no such line.
 WritingBand lay_band(const Writing& writing, const BandSurface& surface, const Vec3& at);
 
-/// Returns all copies on the surface, as `preview_lines` returns one.
+/// Returns all copies on the surface, as `preview_lines` returns one; a frame for each where they are too many lines to
+/// follow a cursor.
 std::vector<std::vector<PreviewPoint>> preview_lines(const mesh::SurfaceQuery& query, const Writing& writing,
                                                      const WritingBand& band, std::size_t most = 3000);
 

@@ -39,7 +39,7 @@ constexpr Step kSteps[] = {
     {"Turn the model", "Drag with the middle or the right mouse button.",
      "Hold Alt and drag with the left mouse button.", turned},
     {"Come nearer", "Turn the mouse wheel over the model.", nullptr, nearer},
-    {"Choose a brush", "Click another brush on the rack. \"Tuft size\" below it makes it larger or smaller.", nullptr,
+    {"Choose a brush", "Click another brush on the rack. \"Tuft size\" over the model makes it larger or smaller.", nullptr,
      another_brush},
     {"Paint", "Drag over the model with the left mouse button. The brush bends where it touches.", nullptr, painted},
     {"Take it back", "Press Ctrl and Z, or the Undo button. Redo brings it again.", nullptr, taken_back},

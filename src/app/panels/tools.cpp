@@ -123,35 +123,23 @@ void place_fields(Ui& ui, ToolState& tools) {
 namespace {
 
 // Once, or in copies along a line of the model.
-void band_row(Ui& ui, Writing& w) {
-    struct Choice {
-        BandLine line;
-        const char *name, *hint;
-    };
-    static constexpr Choice kChoices[] = {
-        {BandLine::none, "Once", "One drawing, at the cursor"},
-        {BandLine::edge, "Edge",
-         "Copies along the border, edge, shut line or crease nearest to the cursor, on the cursor's side of it"},
-        {BandLine::rim, "Round", "Copies round the model, level, through the place under the cursor"},
-        {BandLine::curve, "Curve##direction", "Along the curve whose points were set last with the tool Curve"}};
-    const float gap = ui.px(2), all = ImGui::GetContentRegionAvail().x;
-    const float each = (all - 3 * gap) / 4 / ui.settings().scale;
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));
-    for (const Choice& choice : kChoices) {
-        if (choice.line != BandLine::none) ImGui::SameLine(0, gap);
-        if (ui.choice(choice.name, w.along == choice.line, choice.hint, each)) w.along = choice.line;
-    }
-    ImGui::PopStyleVar();
+void band_choice(Ui& ui, Writing& w, float width) {
+    static const std::vector<std::string> names{"Once", "Edge", "Round", "Curve"};  // as `BandLine`
+    std::string chosen = names[static_cast<std::size_t>(w.along)];
+    if (ui.combo("Lay along", chosen, names, width))
+        w.along = static_cast<BandLine>(std::ranges::find(names, chosen) - names.begin());
+    ui.hint(
+        "One drawing at the cursor, or copies: along the shut line, edge or crease beside the cursor, round the model "
+        "at its height, or along the curve whose points were set last with the tool Curve");
 }
 
 void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
     if (tools.active != Tool::writing) return;
     Writing& w = tools.writing;
     const ImGuiStyle& style = ImGui::GetStyle();
-    // In millimetres beside the file: a row of three switches is wider than the panel.
-    const float beside = w.empty() ? 0
-                                   : style.ItemSpacing.x + ImGui::GetFrameHeight() + style.ItemInnerSpacing.x +
-                                         ImGui::CalcTextSize(ui.tr("In mm")).x;
+    // How it is laid and "In mm" beside the file: no row is left for them.
+    constexpr float kBand = 68, kInMm = 46;
+    const float beside = w.empty() ? 0 : 2 * style.ItemSpacing.x + ui.px(kBand + kInMm);
     const float all = ImGui::GetContentRegionAvail().x - beside, inside = all - 2 * style.FramePadding.x;
     // The button is named by what is in hand.
     const std::string name = w.file.filename().string();
@@ -162,14 +150,18 @@ void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
     ui.hint(w.empty() ? "InkML or SVG" : "Another one, InkML or SVG");
     if (w.empty()) return;
     ImGui::SameLine();
-    ui.toggle("In mm", tools.place.has_fields, "Place in millimetres");
+    band_choice(ui, w, kBand);
+    ImGui::SameLine();
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(ui.px(2), style.FramePadding.y));
+    if (ui.choice("In mm", tools.place.has_fields, "Place in millimetres", kInMm))
+        tools.place.has_fields = !tools.place.has_fields;
+    ImGui::PopStyleVar();
     for (const Message& note : w.form().notes) ui.note(ui.sentence(note));
     ui.toggle("Mirrored", w.mirrored);
     ImGui::SameLine();
     ui.toggle("Snap", tools.place.snaps,
               "To the plane of symmetry and level with other drawings; Ctrl places it freely");
     if (tools.place.has_fields) place_fields(ui, tools);
-    band_row(ui, w);
     const bool names =
         std::ranges::any_of(w.lines.traces, [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });
     if (!w.areas.traces.empty() && !w.lines.traces.empty())

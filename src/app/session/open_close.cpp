@@ -64,6 +64,7 @@ void forget_model(Session& s) {
     s.tools.curve = {};
     s.tools.lettering.curve.clear();
     s.tools.place.lines.reset();
+    s.tools.place.lines_of.reset();
     s.tools.lettering.kept.clear();
 }
 

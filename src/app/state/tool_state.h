@@ -20,16 +20,17 @@ enum class Tool { brush, line, curve, writing, text, eraser, fill, pick, mask };
 
 /// Where a drawing or a text will lie.
 struct DrawingPlace {
-    std::vector<std::vector<PreviewPoint>> preview;  ///< its lines on the surface
-    Message fault;                                   ///< why it cannot lie there
-    bool snaps = true;                               ///< to planes of symmetry and to other drawings
-    std::vector<std::vector<Vec3>> guides;           ///< metres, lines along the surface that it snapped to
-    std::array<double, 3> millimetres{};             ///< position, at the cursor or as typed
-    bool has_fields = false;                         ///< its position is shown in fields
-    bool is_typed = false;                           ///< it is to be placed at `millimetres`
-    std::unique_ptr<writer::FeatureLines> lines;     ///< of the model, for bands along an edge; null: not looked for
-    int copies = 0;                                  ///< of the band that is shown; 0: none
-    double copy_width = 0;                           ///< metres, of each of them
+    std::vector<std::vector<PreviewPoint>> preview;      ///< its lines on the surface
+    Message fault;                                       ///< why it cannot lie there
+    bool snaps = true;                                   ///< to planes of symmetry and to other drawings
+    std::vector<std::vector<Vec3>> guides;               ///< metres, lines along the surface that it snapped to
+    std::array<double, 3> millimetres{};                 ///< position, at the cursor or as typed
+    bool has_fields = false;                             ///< its position is shown in fields
+    bool is_typed = false;                               ///< it is to be placed at `millimetres`
+    std::shared_ptr<const mesh::SurfaceQuery> lines_of;  ///< the surface whose `lines` these are
+    std::unique_ptr<writer::FeatureLines> lines;         ///< for bands along an edge; null: not looked for
+    int copies = 0;                                      ///< of the band that is shown; 0: none
+    double copy_width = 0;                               ///< metres, of each of them
 };
 
 /// The active tool and the settings of each tool.

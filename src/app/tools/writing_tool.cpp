@@ -18,10 +18,14 @@ stroke::Placement WritingTool::placement_at(const PlacingSpot& spot) const {
 
 WritingBand WritingTool::band_at(const PlacingSpot& spot) const {
     Session& s = session_;
-    if (!s.tools.place.lines) s.tools.place.lines = std::make_unique<writer::FeatureLines>(s.paint_thread->surface());
+    DrawingPlace& place = s.tools.place;
+    if (const auto surface = s.paint_thread->shared_surface(); !place.lines || place.lines_of != surface) {
+        place.lines = std::make_unique<writer::FeatureLines>(*surface);
+        place.lines_of = surface;  // after the former lines are gone
+    }
     return lay_band(s.tools.writing,
-                    {.query = s.paint_thread->surface(),
-                     .lines = *s.tools.place.lines,
+                    {.query = *place.lines_of,
+                     .lines = *place.lines,
                      .curve = s.tools.lettering.curve,
                      .texel = s.paint_thread->model().texels.texel_size},
                     spot.at);
@@ -35,7 +39,10 @@ WritingTool::PreviewKey WritingTool::key_at(const PlacingSpot& spot) const {
             .scale = w.scale,
             .along = w.along,
             .repeats = w.repeats,
-            .curve = session_.tools.lettering.curve.size(),
+            .curve = session_.tools.lettering.curve,
+            .file = w.file,
+            .box = {w.form().box.lo, w.form().box.hi},
+            .surface = session_.paint_thread->shared_surface(),
             .mirrored = w.mirrored,
             .own_ink = w.own_ink,
             .mapping = w.mapping};
@@ -94,6 +101,8 @@ void WritingTool::show_band(const PlacingSpot& spot) {
         place.preview = preview_lines(s.paint_thread->surface(), s.tools.writing, band);
         place.copies = band.band.repeats;
         place.copy_width = band.band.width;
+        // Which edge was found; a level line goes through the cursor, and a curve was set by hand.
+        if (s.tools.writing.along != BandLine::edge) return;
         if (band.path.closed) band.path.points.push_back(band.path.points.front());
         place.guides = {std::move(band.path.points)};
     } catch (const Error& error) {

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <array>
+#include <filesystem>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "app/document/writing_band.h"
 #include "app/input/events.h"
@@ -32,7 +36,10 @@ class WritingTool {
         double scale = 0;
         BandLine along = BandLine::none;
         int repeats = 0;
-        std::size_t curve = 0;  ///< number of its points
+        std::vector<CurvePoint> curve;
+        std::filesystem::path file;
+        std::array<Vec3, 2> box{};  ///< of the drawing
+        std::shared_ptr<const mesh::SurfaceQuery> surface;
         bool mirrored = false, own_ink = false;
         stroke::SurfaceMapping mapping = stroke::SurfaceMapping::drape;
         bool operator==(const PreviewKey&) const = default;

@@ -125,6 +125,7 @@ PlacedDrawing place_along(std::vector<stroke::JournalEntry>& strokes, const stro
     for (const stroke::FlatArea* area : areas) stroke::add_extent(extent, *area);
     const PathOnModel on = path_of(model, a, console);
     const double length = on.path.length(), width = stroke::width_of(extent);
+    if (!(length > 0) || !(width > 0)) throw UsageError("--along needs a path and a drawing with a length");
     const writer::Band band = writer::band_of(length, extent, options);
     const std::vector<std::size_t> drawn = indices_of(strokes, drawing);
     const std::size_t n = strokes.size();
@@ -136,7 +137,7 @@ PlacedDrawing place_along(std::vector<stroke::JournalEntry>& strokes, const stro
     for (std::size_t first = 0; first < strokes.size(); first += n)
         for (const std::size_t i : drawn) copies.push_back(&strokes[first + i].as<stroke::PaintStroke>()->trace);
     finish_strokes(strokes, copies, {.scale = band.scale, .extent = std::max(band.width, band.height)}, a, console);
-    const writer::PathPlace first = writer::place_on(on.path, 0, 0.25 * band.step);
+    const writer::PathPlace first = writer::place_on(on.path, 0, writer::kBandReach * band.step);
     return {.at = first.position,
             .normal = first.normal,
             .size = band.scale * Vec2(extent.size()),

@@ -65,9 +65,33 @@ PointerInput::PointerInput(const mesh::SurfaceQuery& surface, const brush::Prese
       options_{settings, pressure_options(settings), position_filter(settings)},
       view_(surface, std::min({2 * preset.radius, kMostFelt, kFeltOfModel * surface.mesh().bounds.diagonal()}),
             holder_.steady),
+      radius_(preset.radius),
       wide_(brush::can_be_turned(preset)) {
     holder_.tip_lag = std::move(lag.upright);
     holder_.tip_lag_change = std::move(lag.tilted);
+}
+
+// Along the middle of the holder and four lines round it. Near the place lies the surface itself, with what grain and
+// curvature it has.
+bool PointerInput::has_room(const Vec3& at, const Vec3& along) const {
+    constexpr double kNear = 0.15;  // of the tuft's length
+    const double length = holder_.tuft_length + holder_.hover, near = kNear * length;
+    const Frame f = make_frame(at, along);
+    for (const Vec3& side : {Vec3(0), f.t, -f.t, f.b, -f.b})
+        if (surface_.ray(at + radius_ * side, along, near, length)) return false;
+    return true;
+}
+
+std::optional<AimedSurface> PointerInput::find_surface(const Aim& aim) const {
+    constexpr int kLeans = 8;
+    auto found = view_.find(aim);
+    if (!found || has_room(found->position, found->normal)) return found;
+    const Vec3 normal = found->normal, eye = -aim.ray.direction;
+    for (int i = 1; i <= kLeans; ++i) {
+        found->normal = glm::normalize(glm::mix(normal, eye, static_cast<double>(i) / kLeans));
+        if (has_room(found->position, found->normal)) break;
+    }
+    return found;
 }
 
 // The smoothed point cuts the corners of a curved surface: it is brought back. Over a gap the nearest
@@ -423,6 +447,7 @@ void PointerInput::catch_up(std::vector<brush::Pose>& poses) {
 
 std::vector<StrokeStep> PointerInput::move(const Aim& aim) {
     std::vector<StrokeStep> steps;
+    options_.by_motion = pressure_options(options_.pointer, aim.metres_per_pixel);
     auto hit = find_surface(aim);
     if (hit && !hit->bridged) {
         if (!side_.on_back && !hit->inside) side_.on_back = hit->back;

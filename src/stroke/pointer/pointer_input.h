@@ -54,6 +54,9 @@ struct StrokeStep {
 /// (stroke/placement/turn_back.h). Nobody knows what the hand does next: it is taken to go on straight. A pen, which
 /// does not lead its ink, lifts the hair as it comes back over half of its tip lag, and sets it down over its end.
 ///
+/// Where a wall is over the place, nearer than the tuft is long, such as a wheel arch over its tyre, the holder leans
+/// from the surface's normal towards the eye until it has room: what is seen can be reached from there.
+///
 /// A holder that neither a pen nor the settings lean, leans as its make is held (`lean_of_make`).
 class PointerInput {
   public:
@@ -69,8 +72,9 @@ class PointerInput {
     /// Returns the pose of a brush held above the aimed surface; nothing where the aim hits nothing.
     std::optional<brush::Pose> hover(const Aim& aim) const;
     const HolderOptions& holder() const { return holder_; }
-    /// Returns the surface that the aim hits; over a gap narrower than the tuft, the surface on both sides.
-    std::optional<AimedSurface> find_surface(const Aim& aim) const { return view_.find(aim); }
+    /// Returns the surface that the aim hits; over a gap narrower than the tuft, the surface on both sides. Its normal
+    /// is one along which the holder has room.
+    std::optional<AimedSurface> find_surface(const Aim& aim) const;
 
   private:
     struct Waiting {
@@ -96,8 +100,8 @@ class PointerInput {
     };
     struct Options {
         PointerSettings pointer;
-        PressureOptions by_motion;
-        OneEuroOptions filter;  ///< of the position
+        PressureOptions by_motion;  ///< at the scale of the last aim
+        OneEuroOptions filter;      ///< of the position
     };
     /// What a hand's samples are steadied by (`gesture`).
     struct Steadying {
@@ -120,6 +124,7 @@ class PointerInput {
         bool over_edge = false;       ///< the cursor crossed an edge of the outline since it was pressed
     };
 
+    bool has_room(const Vec3& at, const Vec3& along) const;
     bool is_clean(const Aim& aim) const { return options_.pointer.clean_ends && aim.pressure < 0; }
     brush::Pose pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure, double time) const;
     Quat rotation_at(const Aim& aim, const Vec3& normal, const Vec3& up) const;
@@ -152,7 +157,8 @@ class PointerInput {
     HolderOptions holder_;
     Options options_;
     LevelledView view_;
-    bool wide_;  ///< the ferrule is wider than thick
+    double radius_;  ///< metres, of the tuft
+    bool wide_;      ///< the ferrule is wider than thick
     bool down_ = false;
     Side side_;
     Aim aim_;                       ///< the last one

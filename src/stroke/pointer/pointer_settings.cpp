@@ -25,6 +25,14 @@ PressureOptions pressure_options(const PointerSettings& s) {
             .linear = true};
 }
 
+PressureOptions pressure_options(const PointerSettings& s, double metres_per_pixel) {
+    PressureOptions options = pressure_options(s);
+    const double slower = std::max(1.0, kFastPixels * metres_per_pixel / options.fast);
+    options.fast *= slower;
+    options.still *= slower;
+    return options;
+}
+
 OneEuroOptions position_filter(const PointerSettings& s) {
     constexpr double kShortest = 1e-6;  // seconds
     return {.cutoff = 1 / (2 * std::numbers::pi * std::max(kShortest, s.smoothing))};

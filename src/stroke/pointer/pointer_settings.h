@@ -12,7 +12,8 @@ namespace tuft::stroke {
 /// Settings of a pointer device.
 struct PointerSettings {
     double pressure = 0.45;              ///< 0–1, fraction of the working depth in slow motion
-    double speed_effect = 0.5;           ///< fraction of the pressure lost at 0.25 m/s and above
+    double speed_effect = 0.5;           ///< fraction of the pressure lost at 0.25 m/s and above, or at
+                                         ///< `kFastPixels` and above where that is faster
     double dwell_effect = 0.25;          ///< pressure added by dwelling
     double smoothing = 0.03;             ///< seconds, time constant of the low-pass on position
     double string = 0;                   ///< metres, length of the string by which the cursor pulls the brush
@@ -33,6 +34,11 @@ double pen_depth(const PointerSettings& settings, double pressure);
 /// steps of a pixel, and the slow ends of a stroke are no rest. The loss is linear: a hand that draws slowly keeps its
 /// line's width. A brush presses 0.02 at least: it stays down.
 PressureOptions pressure_options(const PointerSettings& settings);
+/// Speed of a cursor that is fast to its hand, pixels a second. Where a whole car is in view a slow hand goes metres a
+/// second over it.
+inline constexpr double kFastPixels = 600;
+/// Returns the same law where a pixel is that many metres on the model.
+PressureOptions pressure_options(const PointerSettings& settings, double metres_per_pixel);
 
 /// Returns the filter of a pointer's position: of a fixed time constant, so that a fast hand is a little behind its
 /// cursor. On that last part of its path, which is known, it lifts the brush.

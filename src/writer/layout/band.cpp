@@ -12,7 +12,6 @@ namespace tuft::writer {
 namespace {
 
 constexpr double kMeets = 0.01;  // of a path's length, between ends that meet
-constexpr double kReach = 0.25;  // of a step, to either side, over which the path's direction is taken
 
 /// Geodesic curvature of a path at a length on it, 1/m, positive to the left: dT/ds · (n × T).
 double curvature_of(const ModelPath& path, double along, double reach) {
@@ -69,7 +68,7 @@ Band band_of(double length, const Box& extent, const BandOptions& options) {
 std::vector<BandPlace> band_places(const ModelPath& path, const Band& band) {
     std::vector<BandPlace> places;
     for (int k = 0; k < band.repeats; ++k) {
-        const double along = (k + (path.closed ? 0 : 0.5)) * band.step, reach = kReach * band.step;
+        const double along = (k + (path.closed ? 0 : 0.5)) * band.step, reach = kBandReach * band.step;
         const PathPlace at = place_on(path, along, reach);
         places.push_back({{.origin = at.position,
                            .right = at.right,

@@ -14,6 +14,9 @@ namespace tuft::writer {
 /// Most copies along a path.
 inline constexpr int kMostCopies = 1000;
 
+/// Part of a step, to either side of a copy's middle, over which the direction of its path is taken.
+inline constexpr double kBandReach = 0.25;
+
 /// How a drawing is to be repeated.
 struct BandOptions {
     int repeats = 0;        ///< 0: as many as the path has room for, made to meet
