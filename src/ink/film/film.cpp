@@ -104,6 +104,7 @@ struct WetFilm::State : TileList {
         if (canvas.wet()) return;
         workers.clear();
         seepage.release();
+        sheets.release();
     }
 
     void report_slot(std::uint32_t slot, const BeforeFn& before) {
@@ -117,8 +118,8 @@ struct WetFilm::State : TileList {
         if (!(glm::length(params.weight.down) > 0)) return false;
         const std::vector<std::uint32_t> written =
             sheets.run(canvas, *this, dt, [&](std::uint32_t slot) { report_slot(slot, before); });
-        if (!written.empty()) search_tile(canvas, written);
-        return run_beads(canvas, params, dt, before) || !written.empty();
+        if (!written.empty()) search_tile(canvas, written), sources.clear();
+        return run_beads(canvas, params, dt, before) || sheets.fast();
     }
     bool run_beads(Canvas& canvas, const FilmParams& params, double dt, const BeforeFn& before) {
         const std::vector<Drips::Seed> seeds =
@@ -508,7 +509,6 @@ WetFilm::WetFilm(WetFilm&&) noexcept = default;
 
 void WetFilm::keep_within(FreeFn free) {
     state_->set_free(std::move(free));
-    state_->sheets.forget();
 }
 
 FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& params, const BeforeFn& before,

@@ -141,6 +141,7 @@ void TileList::set_free(WetFilm::FreeFn free) {
 }
 
 void TileList::search_again() {
+    ++faces_version_;
     for (auto& g : geometry) g.reset();
     for (auto& g : split_geometry) g.reset();
     EaseOfFlow ease(medium_, map.texel_size), beyond(medium_, map.texel_size);

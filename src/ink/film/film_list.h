@@ -103,6 +103,8 @@ struct TileList {
     /// Sets the stencil. Costly when it changes.
     void set_free(WetFilm::FreeFn free);
     const FlowMedium& medium() const { return medium_; }
+    /// Returns a number that is another one whenever the faces of tiles have changed.
+    std::uint64_t faces_version() const { return faces_version_; }
     /// Whether a tile has texels at a seam, or blocks of 4 × 4 texels beside some of the next
     /// tile's.
     bool beside_seam(std::uint32_t slot) const { return beside_[slot]; }
@@ -160,6 +162,7 @@ struct TileList {
     std::vector<SeamNeighbour> others_;  ///< of the list
     std::vector<std::uint8_t> beside_;   ///< [n_slots]
     Scratch scratch_;
+    std::uint64_t faces_version_ = 0;
 
     void find_near();
     void use_seams(Active& tile) const;

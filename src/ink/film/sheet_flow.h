@@ -18,14 +18,14 @@ struct Downhill {
     struct Edge {
         std::uint32_t slot = kNone;
         std::uint8_t texel = 0;
-        float ease = 0;  ///< width of the stream · sin α, metres: k w³ times that flows
+        float conductance = 0;  ///< width of the stream · sin α, metres: k w³ times that flows
     };
-    std::array<float, kTexels> elevation{};  ///< metres, against gravity
-    std::array<float, kTexels> steepness{};  ///< sin α; 0: nothing runs from here
-    std::array<float, kTexels> roughness{};  ///< of what a contact line bears, over the mean
+    std::array<float, kTexels> elevation{};        ///< metres, against gravity
+    std::array<float, kTexels> steepness{};        ///< sin α; 0: nothing runs from here
+    std::array<Vec2f, kTexels> across{}, along{};  ///< directions across and along the stream, texels per metre
+    std::array<float, kTexels> roughness{};        ///< of what a contact line bears, over the mean
     std::array<std::uint16_t, kTexels + 1> start{};
     std::vector<Edge> edges;  ///< by texel
-    bool steep = false;       ///< some of it
 };
 
 /// Moves films as sheets [Huppert1982]:
@@ -43,20 +43,23 @@ struct Downhill {
 ///
 ///     ρ g ∫ w sin α ds < σ (cos θ_r − cos θ_a),
 ///
-/// `FilmWeight::hysteresis` times the tension, and the roughness of the place. m is 0 for columns that hold and 1
-/// for those that run. Liquid enters dry texels only from more than w_c + pin.
+/// `FilmWeight::hysteresis` times the tension, the roughness of the place, and 1 + 5 mm over the width: the sides of a
+/// narrow tongue hold it too. m is 0 for columns that hold and 1 for those that run. Liquid enters dry texels only from
+/// more than w_c + pin.
 ///
-/// Where the steepness is below 0.1, and at the edge of the model, columns hold.
+/// At the edge of the model columns hold. Where the steepness is below 0.03 liquid stays, and takes up what comes.
 class SheetFlow {
   public:
     /// Must be called before the first `run` and whenever parameters may have changed. `again`: this call follows the
     /// one before.
     void start(const FilmParams& params, const TileList& tiles, bool again);
-    /// Forgets where liquid goes: the faces have changed.
-    void forget() { downhill_.clear(); }
+    /// Gives its memory back, 9 KiB a tile.
+    void release();
     /// Advances the sheets by `seconds`. Where none ran the last time, they are looked for every 0.25 s. Returns the
     /// written slots, ascending.
     std::vector<std::uint32_t> run(Canvas& canvas, TileList& tiles, double seconds, const WetFilm::BeforeFn& before);
+    /// Whether some went further than a texel in the last `run`.
+    bool fast() const { return fast_; }
     /// Whether a sheet ran there in the last `run`: no bead comes off it.
     bool runs_at(std::uint32_t slot, int texel) const;
 
@@ -64,15 +67,16 @@ class SheetFlow {
     /// A texel of the tiles in work; `id`: place of the tile in `slots_` · 256 + texel.
     struct Node {
         std::uint32_t id = 0;
-        std::uint32_t first = 0, last = 0;  ///< of `edges_`
-        float area = 0;                     ///< m²
-        float steepness = 0, ease = 0;      ///< Σ over edges
-        float entry = 0;                    ///< film units from which liquid enters dry texels
-        float line = 0;                     ///< N/m that its contact line bears
+        std::uint32_t first = 0, last = 0;     ///< of `edges_`
+        float area = 0;                        ///< m²
+        float steepness = 0, conductance = 0;  ///< Σ over edges
+        float entry = 0;                       ///< film units from which liquid enters dry texels
+        float line = 0;                        ///< N/m that its contact line bears
     };
     struct Edge {
         std::uint32_t to = 0;  ///< id
-        float ease = 0;
+        float conductance = 0;
+        bool level = false;   ///< nothing runs from there
         double per_area = 0;  ///< 1 / m² of the texel there
     };
 
@@ -83,22 +87,34 @@ class SheetFlow {
     std::vector<std::uint32_t> tile_of_;               ///< [n_slots] place in `slots_`
     std::vector<Node> nodes_;                          ///< from the highest to the lowest
     std::vector<Edge> edges_;
-    std::vector<double> w_, pores_, load_;      ///< [id] film units, film units, N
-    std::vector<std::array<double, 2>> came_;   ///< [id] scratch: Σ ease, Σ ease · m of what lies above
-    std::vector<double> moves_;                 ///< [id] m
-    std::vector<std::vector<double>> pigment_;  ///< [pigment][id] film units
-    std::vector<std::uint8_t> runs_;            ///< [id] 1: in the last `run`
-    double waited_ = 0;                         ///< s since sheets were looked for
-    bool ran_ = true;
+    std::vector<std::uint32_t> wet_;             ///< of `nodes_`, ascending: those with liquid that may run
+    std::vector<double> w_, pores_, weight_on_;  ///< [id] film units, film units, N
+    std::vector<std::array<double, 2>> inflow_;  ///< [id] scratch: Σ conductance, that times m of what lies above
+    std::vector<double> mobile_;                 ///< [id] m
+    std::vector<std::vector<double>> pigment_;   ///< [pigment][id] film units
+    std::vector<std::uint8_t> runs_;             ///< [id] 1: in the last `run`
+    std::vector<std::uint8_t> changed_;          ///< of `slots_`: 1 where liquid went
+    std::vector<std::uint8_t> steep_;            ///< [n_slots] 0: not looked up, 1: level, 2: steep
+    std::uint64_t faces_version_ = 0;
+    double waited_ = 0;  ///< s since sheets were looked for
+    bool ran_ = true, fast_ = false;
 
     /// Film units that stay: as thick as a bead's trail.
     double rest() const { return std::max(params_.ripples.held, params_.weight.trail); }
     const Downhill& downhill(TileList& tiles, std::uint32_t slot);
     void mark_seams(const TileList& tiles);
-    bool choose_tiles(TileList& tiles);
+    bool choose_tiles(TileList& tiles, double seconds);
     void make_nodes(TileList& tiles);
-    void load(const Canvas& canvas, int pigments);
-    bool find_columns();
+    double edge_moves(const Edge& edge, double front) const;
+    bool is_steep(TileList& tiles, std::uint32_t slot);
+    /// k, 1 / s over film units² and metres: w² k sin α is the speed.
+    double rate() const;
+    void read_planes(const Canvas& canvas, int pigments);
+    bool find_columns(const TileList& tiles);
+    double front_moves(const TileList& tiles, const Node& n) const;
+    double through_liquid(const TileList& tiles, const atlas::TexelPlace& from, const Vec2& direction,
+                          double most) const;
+    double width(const TileList& tiles, const Node& n) const;
     void drag();
     void sweep(double rate, int pigments);
     std::vector<std::uint32_t> store(Canvas& canvas, int pigments, const WetFilm::BeforeFn& before);
