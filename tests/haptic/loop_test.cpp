@@ -55,12 +55,13 @@ TEST(Exchange, AQueueKeepsTheOrderAndCountsWhatDoesNotFit) {
 /// A live loop of a simulated arm over the sheet.
 struct Live {
     TrialModel f = load_trial_model("sheet");
-    brush::Tuft tuft = tuft_of("wolf-small");
+    brush::Tuft tuft;
     SimulatedDevice device{SimulatedArm(device_preset("inverse3"), hand_path(HandMotion::drag, f.place, tuft.preset))};
     LawOptions law{.limits = device_preset("inverse3")};
     Loop loop{device,
               HairSolver(tuft, *f.surface),
               {.law = law, .record = true, .count_allocations = allocations_of_this_thread}};
+    explicit Live(const char* brush = "wolf-small") : tuft(tuft_of(brush)) {}
 };
 
 /// Runs the loop until the hair has pressed for 300 periods. Returns the poses that were solved.
@@ -95,6 +96,15 @@ TEST(Loop, TheServoAllocatesNothingAndTheQueueHoldsWhatWasSolved) {
     ASSERT_GT(poses.size(), 100u);
     for (std::size_t i = 1; i < poses.size(); ++i) ASSERT_GT(poses[i].pose.tick, poses[i - 1].pose.tick);
     EXPECT_LE(live.loop.recent_forces().size(), 3000u);
+}
+
+// Spines side by side, foam and a carried shape hold many times the memory of one spine at once.
+TEST(Loop, WideTuftsAllocateNothingEither) {
+    for (const char* brush : {"bright-12", "hake-60", "sponge-30", "leaf-28"}) {
+        Live live(brush);
+        EXPECT_FALSE(run_until_pressed(live.loop).empty()) << brush;
+        EXPECT_EQ(live.loop.status().allocations, 0u) << brush;
+    }
 }
 
 // Whatever was late, the recording says so: played again, each force is the same to the bit.

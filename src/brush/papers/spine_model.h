@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <span>
 
@@ -27,6 +28,10 @@ struct SpineModelInput {
 class SpineModel {
   public:
     virtual ~SpineModel() = default;
+
+    /// The first copy that a thread keeps must not allocate either.
+    static void* operator new(std::size_t bytes) { return take_block(bytes); }
+    static void operator delete(void* block, std::size_t bytes) { return_block(block, bytes); }
 
     /// Returns a copy with the whole state: a copy of a `Tuft` is a snapshot.
     virtual std::unique_ptr<SpineModel> clone() const = 0;

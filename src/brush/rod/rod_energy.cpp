@@ -41,17 +41,15 @@ AngleFunctions angle_functions(double c, const Vec2& p) {
     return {theta / s, d / (s * s * s), -(theta * s * s - 3 * c * d) / (s * s * s * s * s)};
 }
 
-const Quadrature& fibres() {
-    static const Quadrature rule = gauss_legendre(kFibres);
-    return rule;
-}
+/// Made when the program starts: the first hair that yields must not allocate.
+const Quadrature kFibreRule = gauss_legendre(kFibres);
 
 struct Fibre {
     double stiffness, limit;
 };
 
 Fibre fibre(const Rod& rod, int j, int f) {
-    const Quadrature& q = fibres();
+    const Quadrature& q = kFibreRule;
     return {3 * rod.plastic_share * rod.stiffness[j] * q.x[f] * q.x[f] * q.w[f], rod.yield[j] / q.x[f]};
 }
 
@@ -132,7 +130,7 @@ JointForce joint_force(const Rod& rod, int j, const JointMemory& memory, const V
         out.energy = 0.5 * k_rest * glm::dot(w, w);
         out.moment = k_rest * w;
         out.d00 = out.d11 = k_rest;
-        const Quadrature& q = fibres();
+        const Quadrature& q = kFibreRule;
         double x[kFibres], y[kFibres];
         for (int f = 0; f < kFibres; ++f) {
             const Vec2 s = memory.yielded ? memory.stop[f] + (w - memory.bend) : w;

@@ -137,7 +137,7 @@ class FoamModel : public SpineModel {
         if (foam) *this = *foam;
         return foam != nullptr;
     }
-    Recycled<Vec3> nodes() const override { return {nodes_.begin(), nodes_.end()}; }
+    Recycled<Vec3> nodes() const override { return nodes_; }
     TuftState step(const SpineModelInput& input) override;
     void straighten(const Pose& pose) override;
 
@@ -156,7 +156,7 @@ class FoamModel : public SpineModel {
     }
 
     std::shared_ptr<const FoamBody> body_;
-    std::vector<Vec3> nodes_;
+    Recycled<Vec3> nodes_;
     Pose pose_;
     Vec3 lean_{0};  // m, world: of the face against the mouth, along the surface
     bool touching_ = false;

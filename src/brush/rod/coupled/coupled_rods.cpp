@@ -11,6 +11,8 @@ namespace tuft::brush::rod {
 
 namespace {
 
+using BufferStore = std::deque<Buffers, Recycler<Buffers>>;  ///< a Buffers stays where it is
+
 constexpr double kSettled = 1e-3;  ///< change of t and m between passes, radians, that is no change
 
 struct Work {
@@ -174,8 +176,7 @@ PairState finish_pair(const FrozenPair& f, const CouplingLaw& law, const Work& w
 }
 
 /// Moves the rods to their clamps and prepares the solvers; `buffers` holds one for each rod.
-void begin(std::span<const CoupledRod> rods, std::span<const CoupledPair> pairs, std::deque<Buffers>& buffers,
-           Work& w) {
+void begin(std::span<const CoupledRod> rods, std::span<const CoupledPair> pairs, BufferStore& buffers, Work& w) {
     while (buffers.size() < rods.size()) buffers.emplace_back();
     w.solvers.reserve(rods.size());
     for (std::size_t k = 0; k < rods.size(); ++k) {
@@ -194,7 +195,7 @@ void begin(std::span<const CoupledRod> rods, std::span<const CoupledPair> pairs,
 
 CoupledResult solve_coupled(std::span<const CoupledRod> rods, std::span<const CoupledPair> pairs,
                             const CouplingLaw& law) {
-    thread_local std::deque<Buffers> buffers;  // a Buffers stays where it is
+    thread_local BufferStore buffers;
     Work w;
     begin(rods, pairs, buffers, w);
     CoupledSystem system(w.solvers, w.pairs, law);
@@ -254,7 +255,7 @@ CoupledResult solve_coupled(std::span<const CoupledRod> rods, std::span<const Co
 
 double elimination_residual(std::span<const CoupledRod> rods, std::span<const CoupledPair> pairs,
                             const CouplingLaw& law) {
-    std::deque<Buffers> buffers;
+    BufferStore buffers;
     Work w;
     begin(rods, pairs, buffers, w);
     CoupledSystem system(w.solvers, w.pairs, law);
