@@ -223,6 +223,42 @@ TEST(TipLag, APetalOfAFlatNarrowsSteadily) {
     }
 }
 
+// The hand went back while it lifted, and the hair sprang forward: a step, and a rectangle of three quarters of the
+// width as the end. Lifted while the hand goes on, a toe as wide as 12 mm ends in about a half circle.
+TEST(TipLag, AStrokeOfAFilbertEndsRound) {
+    constexpr double kCell = 1e-4, kWay = 40e-3;
+    static WidthTables tables;
+    const brush::Preset filbert = brush::load_preset("filbert-12");
+    for (const double lands : {4e-3, 7e-3}) {
+        StrokeSamples trace;
+        for (int i = 0; i <= 200; ++i) {
+            const double gone = kWay * i / 200;
+            trace.samples.push_back({.time = gone / 0.05,
+                                     .position = {gone, 0, 0},
+                                     .pressure = 0.5 * std::min({1.0, gone / 7e-3, (kWay - gone) / lands}),
+                                     .roll = 0.5 * std::numbers::pi});
+        }
+        const PlaneInk ink = plane_ink(trace, filbert, tables.holder("filbert-12"), 5e-4, kCell);
+        const auto width_at = [&](double x) {
+            double width = 0;
+            for (double y = -0.012; y < 0.012; y += kCell) width += ink.at({x, y}) > 0.5 ? kCell : 0;
+            return width;
+        };
+        double end = kWay + 0.01;
+        while (end > 0 && width_at(end) == 0) end -= kCell;
+        EXPECT_NEAR(end, kWay, 1.5e-3) << "it ends where its path does";
+        const double whole = width_at(0.5 * kWay), radius = 0.5 * whole;
+        for (const double left : {0.5e-3, 1e-3, 2e-3, 3e-3, 5e-3}) {
+            // Of five spines, each 2.4 mm wide.
+            EXPECT_NEAR(width_at(end - left), 2 * std::sqrt(left * (2 * radius - left)), 2.4e-3)
+                << lands << ' ' << left;
+        }
+        for (double x = kWay - 0.015; x < end - 1e-3; x += kCell) {
+            EXPECT_LT(width_at(x) - width_at(x + 3 * kCell), 2.4e-3) << x << ": no step";
+        }
+    }
+}
+
 TEST(TipLag, TheLagFollowsATurnOfAWideFerruleAsItsHairFallsOver) {
     HolderOptions options{.tuft_length = 0.02, .turned = true};
     options.tip_lag = {{0, 0}, {0.01, 0}};

@@ -218,6 +218,21 @@ class BranchSurface {
     std::size_t cap_ = 0;  // nodes that close the tip
 };
 
+/// Where a spine's hair would be if it were straight.
+struct StraightHair {
+    double pressed = 0;  ///< metres of its tip below the surface where the spine's tip is
+    Vec2 foot{0};        ///< metres, (u, v), of its tip
+};
+StraightHair straight_hair(std::span<const brush::Section> sections, const NodePlanes* planes, const Frame& frame) {
+    double length = 0;
+    for (std::size_t i = 1; i < sections.size(); ++i)
+        length += glm::distance(sections[i].centre, sections[i - 1].centre);
+    const bool own = planes && !planes->empty();
+    const Vec3 normal = own ? planes->front().normal : frame.n, origin = own ? planes->front().origin : frame.origin;
+    const Vec3 tip = sections.back().centre + length * sections.back().tangent;
+    return {glm::dot(origin - tip, normal), Vec2(frame.to_local(tip))};
+}
+
 /// Part [begin, end] of the surface that touches.
 struct Stretch {
     double begin = 0, end = 0;
@@ -262,6 +277,17 @@ struct TouchingPart {
     double over_half = 1, side = 0;
 };
 
+// Sine of the angle between a strip and its hair up to which and from which on that of a toe stands ahead.
+constexpr double kOblique = 0.8, kSquareTo = 0.97;
+constexpr double kFarAhead = 8;  // half widths of a strip, by which hair of a toe stands ahead at most
+
+/// Direction of a section's hair on the surface, unit; zero where it stands.
+Vec2 hair_on_surface(const Cut& cut) {
+    const Vec2 hair(glm::cross(cut.e, cut.m));
+    const double size = glm::length(hair);
+    return size > 1e-9 ? hair / size : Vec2{0};
+}
+
 /// `own`: section of the strip; `other`: of the neighbour at the same part of its hair, above the surface.
 TouchingPart touching_part(const Cut& own, const Cut& other) {
     const Vec3 broad = own.broad();
@@ -288,11 +314,12 @@ Cut extrapolate_cut(const Cut& own, const Cut& inner) {
 class RowLanding {
   public:
     RowLanding(Recycled<Trail>& trails, std::span<const Stretch> stretches, std::span<const BranchSurface> surfaces,
-               std::span<const brush::Branch> branches)
+               std::span<const brush::Branch> branches, std::span<const StraightHair> straight)
         : trails_(trails),
           stretches_(stretches),
           surfaces_(surfaces),
           branches_(branches),
+          straight_(straight),
           most_(surfaces.size(), -1.0) {
         for (const Trail& trail : trails)
             for (const Cut& cut : trail.cuts)
@@ -301,6 +328,10 @@ class RowLanding {
 
     /// Trail k on the side of a neighbour.
     void bound(std::size_t k, int neighbour) {
+        if (is_beside_toe(k, neighbour)) {
+            bound_by_length(k, neighbour);
+            return;
+        }
         // Also beside a part of the neighbour that touches: it goes over into its own width as that lands.
         bound(k, neighbour, kFarthest, std::max(largest_overlap(neighbour), 0.0) / overlap_of(k),
               [](const Cut&, const Cut& beside) { return beside; });
@@ -312,6 +343,38 @@ class RowLanding {
     }
 
   private:
+    /// Whether a neighbour of trail k is in the air because its hair is shorter.
+    bool is_beside_toe(std::size_t k, int neighbour) {
+        const auto other = static_cast<std::size_t>(neighbour), own = static_cast<std::size_t>(trails_[k].branch);
+        const double shorter = 1 - branches_[other].rest_length / branches_[own].rest_length;
+        return largest_overlap(neighbour) < 0 && shorter > 0 && shorter < kSideBySide &&
+               straight_[other].pressed < straight_[own].pressed;
+    }
+
+    /// Ends trail k where hair between it and a shorter neighbour would just touch if it were straight, at the foot of
+    /// that hair: what touches so little is hardly bent.
+    void bound_by_length(std::size_t k, int neighbour) {
+        const StraightHair &own = straight_[static_cast<std::size_t>(trails_[k].branch)],
+                           &other = straight_[static_cast<std::size_t>(neighbour)];
+        const double thick = trails_[k].cuts.front().half_height(), touching = own.pressed + thick;
+        const double part = std::clamp(touching / std::max(own.pressed - other.pressed, 1e-9), 0.0, 1.0);
+        const Vec2 end = glm::mix(own.foot, other.foot, part);
+        for (Cut& cut : trails_[k].cuts) {
+            const Vec3 broad = cut.broad();
+            const Vec2 flat(broad), hair = hair_on_surface(cut);
+            const double size = glm::length(flat), half = Cut::kStripChord * size;
+            if (!(half > 1e-9)) continue;
+            const double across = std::abs(flat.x * hair.y - flat.y * hair.x) / size;
+            const double lies = smooth_step((size / glm::length(broad) - kStandsAside) / (kLiesBeside - kStandsAside)) *
+                                smooth_step((across - kOblique) / (kSquareTo - kOblique));
+            const bool hi = glm::dot(other.foot - own.foot, flat) > 0;
+            const double over_half = std::abs(glm::dot(end - cut.centre, flat)) / (size * half);
+            (hi ? cut.reach.y : cut.reach.x) = std::lerp(1.0, std::min(over_half, kFarthest), lies);
+            const double ahead = glm::dot(end - cut.centre, hair);
+            (hi ? cut.ahead_hi : cut.ahead_lo) = lies * std::clamp(ahead, -kFarAhead * half, kFarAhead * half) * hair;
+        }
+    }
+
     template <class OtherCut>
     void bound(std::size_t k, int neighbour, double farthest, double landed_part, OtherCut other_of) {
         const auto branch = static_cast<std::size_t>(neighbour),
@@ -345,6 +408,7 @@ class RowLanding {
     std::span<const Stretch> stretches_;
     std::span<const BranchSurface> surfaces_;
     std::span<const brush::Branch> branches_;
+    std::span<const StraightHair> straight_;
     Recycled<double> most_;  // overlap of each branch, metres; −1: it does not touch
 };
 
@@ -361,63 +425,6 @@ void bound_strips(RowLanding landing, std::span<const Trail> trails, std::span<c
 
 }  // namespace
 
-Cut cut_between(const Cut& p, const Cut& q, double f) {
-    const auto unit = [](const Vec3& v, const Vec3& otherwise) {
-        const double size = glm::length(v);
-        return size > 1e-9 ? v / size : otherwise;
-    };
-    const Vec2 turn = glm::mix(p.turn, q.turn, f);
-    return {glm::mix(p.centre, q.centre, f),
-            std::lerp(p.z, q.z, f),
-            std::lerp(p.a, q.a, f),
-            std::lerp(p.b, q.b, f),
-            unit(glm::mix(p.e, q.e, f), p.e),
-            unit(glm::mix(p.m, q.m, f), p.m),
-            glm::dot(turn, turn) > 1e-6 ? glm::normalize(turn) : p.turn,
-            glm::mix(p.slant, q.slant, f),
-            glm::mix(p.bow, q.bow, f),
-            glm::mix(p.drop, q.drop, f),
-            p.free_side,
-            glm::mix(p.reach, q.reach, f)};
-}
-
-Recycled<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<const brush::ContactPlane> planes) {
-    const auto& branches = tuft.branches;
-    if (planes.size() == 1) {
-        Recycled<NodePlanes> same;
-        same.reserve(branches.size());
-        for (const brush::Branch& b : branches) same.emplace_back(b.sections.size(), planes[0]);
-        return same;
-    }
-    if (branches.size() == 1 && planes.size() >= branches[0].sections.size())
-        return {NodePlanes(planes.begin(), planes.begin() + branches[0].sections.size())};
-    if (branches.size() < 2) return {};
-    if (tuft.wide) {
-        Recycled<NodePlanes> own;
-        std::size_t first = 0;
-        for (const brush::Branch& b : branches) {
-            if (planes.size() < first + b.sections.size()) return {};
-            const auto part = planes.subspan(first, b.sections.size());
-            own.emplace_back(part.begin(), part.end());
-            first += b.sections.size();
-        }
-        return own;
-    }
-    // The middle branch ends in the whole spine's root; its outer nodes are the sub_spine's.
-    const std::size_t trunk = branches[branches.size() / 2].sections.size();
-    const std::size_t sub_spine = branches[0].sections.size();
-    if (trunk < sub_spine || planes.size() != trunk + branches.size() * sub_spine) return {};
-    Recycled<NodePlanes> dealt;
-    for (std::size_t k = 0; k < branches.size(); ++k) {
-        const auto own = planes.subspan(trunk + k * sub_spine, sub_spine);
-        dealt.emplace_back(own.begin(), own.end());
-        if (k != branches.size() / 2) continue;
-        dealt.back().pop_back();
-        dealt.back().insert(dealt.back().end(), planes.begin() + sub_spine - 1, planes.begin() + trunk);
-    }
-    return dealt;
-}
-
 Recycled<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
                             double length, double film) {
     Recycled<Trail> found;
@@ -428,9 +435,11 @@ Recycled<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, st
     const bool row = tuft.strips && count > 1;
     const Recycled<brush::Branch> bound = row ? bound_on_edge(tuft, frame, planes) : Recycled<brush::Branch>{};
     const Recycled<brush::Branch>& branches = row ? bound : tuft.branches;
+    Recycled<StraightHair> straight(count);
     for (std::size_t k = 0; k < count; ++k) {
         const auto& sections = branches[k].sections;
         if (sections.size() < 2) continue;
+        if (row) straight[k] = straight_hair(sections, k < planes.size() ? &planes[k] : nullptr, frame);
         const BranchSurface& surface = surfaces.emplace_back(
             branches[k], tuft.strips, frame, k < planes.size() ? &planes[k] : nullptr, std::max(film, 0.0));
         // The middle one of several branches goes on as the trunk.
@@ -445,7 +454,9 @@ Recycled<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, st
                         .length = whole,
                         .strip = tuft.strips,
                         .corners = tuft.branches[k].strip,
-                        .edge_short = tuft.branches[k].edge_short};
+                        .edge_short = tuft.branches[k].edge_short,
+                        .pressed = straight[k].pressed,
+                        .foot = straight[k].foot};
             for (const brush::Opening& opening : tuft.openings)
                 if (opening.first == trail.branch) trail.openings.push_back({opening.second, {}});
             trail.cuts.reserve(kSamples);
@@ -465,7 +476,7 @@ Recycled<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, st
         }
     }
     if (tuft.strips && surfaces.size() == count)
-        bound_strips({found, stretches, surfaces, tuft.branches}, found, tuft.openings);
+        bound_strips({found, stretches, surfaces, tuft.branches, straight}, found, tuft.openings);
     return found;
 }
 

@@ -30,6 +30,9 @@ struct Cut {
     /// How far a strip touches from its middle towards −broad and +broad, over its half width there. Negative where all
     /// that touches lies beyond the middle.
     Vec2 reach{1, 1};
+    /// Metres, (u, v), along the hair: by how much that ends of `reach` towards −broad and +broad lie further ahead.
+    /// Hair of a toe that is about to leave the surface stands over the foot of its unbent tip.
+    Vec2 ahead_lo{0}, ahead_hi{0};
 
     double half_height() const { return std::sqrt(a * a * e.z * e.z + b * b * m.z * m.z); }
     double overlap() const { return half_height() - z; }
@@ -46,7 +49,14 @@ struct Cut {
         const Vec2 spline = s * slant + (1 - s * s) * bow;
         return drop == Vec2{0} ? spline : spline + drop_part(s * free_side) * drop;
     }
-    bool is_bent() const { return slant != Vec2{0} || bow != Vec2{0} || drop != Vec2{0}; }
+    /// By how much the place x lies ahead for the ends of `reach`.
+    Vec2 ahead(double x) const {
+        const double end = kStripChord * (x < 0 ? reach.x : reach.y);
+        const double part = end > 1e-9 ? std::min(std::abs(x) / end, 1.0) : 0;
+        return part * part * (x < 0 ? ahead_lo : ahead_hi);
+    }
+    bool stands_ahead() const { return ahead_lo != Vec2{0} || ahead_hi != Vec2{0}; }
+    bool is_bent() const { return slant != Vec2{0} || bow != Vec2{0} || drop != Vec2{0} || stands_ahead(); }
     /// Part of the drop at s, counted towards the free edge.
     static double drop_part(double s) {
         const double from_inner = 0.5 * (1 + s);
@@ -76,6 +86,8 @@ struct Trail {
     bool strip = false;               ///< a spine of a row: its hair fills a rectangle, not a disc
     Recycled<Vec2> corners;           ///< of that strip, see brush::Branch
     double edge_short = 0;            ///< metres, see brush::Branch
+    double pressed = 0;               ///< metres of the unbent tip below the surface at the tip
+    Vec2 foot{0};                     ///< metres, (u, v), of the unbent tip
     Recycled<TrailOpening> openings;  ///< to neighbours that follow in brush::TuftState::openings
 
     /// Half the thickness of the hair at x in [−1, 1] of a section, over b.

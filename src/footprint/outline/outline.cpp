@@ -118,12 +118,13 @@ void add_strip_shadow(const Cut& cut, std::span<const Vec2> strip, std::span<con
     double reach = 0;
     for (const Vec2& c : strip) reach = std::max(reach, -(c.x * broad.z + c.y * thick.z));
     const double half = cut.half_height(), z = half > 0 ? cut.z * reach / half : cut.z;
-    const bool bent = cut.is_bent(), drops = cut.drop != Vec2{0};
+    const bool bent = cut.is_bent(), drops = cut.drop != Vec2{0}, ahead = cut.stands_ahead();
     const Vec2 across(broad), through(thick), centre = cut.centre, slant = cut.slant, bow = cut.bow;
     const auto height = [&](const StripPlace& p) { return z + p.at.x * broad.z + p.at.y * thick.z; };
     const auto point = [&](const StripPlace& p) {
         Vec2 middle = bent ? centre + (p.s * slant + p.bow * bow) : centre;
         if (drops) middle += Cut::drop_part(p.s * cut.free_side) * cut.drop;
+        if (ahead) middle += cut.ahead(p.at.x);
         return middle + p.at.x * across + p.at.y * through;
     };
     const std::size_t before = corners.size(), n = places.size();
@@ -174,6 +175,43 @@ Recycled<Vec2> spline_control(const Recycled<Vec2>& p) {
 }
 
 }  // namespace
+
+Recycled<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<const brush::ContactPlane> planes) {
+    const auto& branches = tuft.branches;
+    if (planes.size() == 1) {
+        Recycled<NodePlanes> same;
+        same.reserve(branches.size());
+        for (const brush::Branch& b : branches) same.emplace_back(b.sections.size(), planes[0]);
+        return same;
+    }
+    if (branches.size() == 1 && planes.size() >= branches[0].sections.size())
+        return {NodePlanes(planes.begin(), planes.begin() + branches[0].sections.size())};
+    if (branches.size() < 2) return {};
+    if (tuft.wide) {
+        Recycled<NodePlanes> own;
+        std::size_t first = 0;
+        for (const brush::Branch& b : branches) {
+            if (planes.size() < first + b.sections.size()) return {};
+            const auto part = planes.subspan(first, b.sections.size());
+            own.emplace_back(part.begin(), part.end());
+            first += b.sections.size();
+        }
+        return own;
+    }
+    // The middle branch ends in the whole spine's root; its outer nodes are the sub_spine's.
+    const std::size_t trunk = branches[branches.size() / 2].sections.size();
+    const std::size_t sub_spine = branches[0].sections.size();
+    if (trunk < sub_spine || planes.size() != trunk + branches.size() * sub_spine) return {};
+    Recycled<NodePlanes> dealt;
+    for (std::size_t k = 0; k < branches.size(); ++k) {
+        const auto own = planes.subspan(trunk + k * sub_spine, sub_spine);
+        dealt.emplace_back(own.begin(), own.end());
+        if (k != branches.size() / 2) continue;
+        dealt.back().pop_back();
+        dealt.back().insert(dealt.back().end(), planes.begin() + sub_spine - 1, planes.begin() + trunk);
+    }
+    return dealt;
+}
 
 Vec2 unit_or(const Vec2& v, const Vec2& other) {
     const double length = glm::length(v);

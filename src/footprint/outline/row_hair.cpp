@@ -21,9 +21,11 @@ constexpr double kAlongRow = 0.2, kAcrossRow = 0.5;
 // Part of a strip's broad axis that lies on the surface, and sine of the angle between it and its hair, from which on
 // its ends follow its neighbours'.
 constexpr double kLies = 0.6, kLiesFlat = 0.8, kAcrossHair = 0.5, kSquare = 0.8;
-constexpr double kMostAslant = 2;   // times its half width, that a strip's edge lies from its broad axis
-constexpr double kStraight = 0.01;  // of its half width
-constexpr double kTurning = 0.15;   // cosine from a broad axis to its row below which it is between both directions
+constexpr double kMostAslant = 2;  // times its half width, that a strip's edge lies from its broad axis
+constexpr double kOblique = 0.8, kSquareTo = 0.97;  // likewise, from which on hair of a toe stands ahead
+constexpr double kFarAhead = 3;                     // likewise, that hair of a toe stands ahead at most
+constexpr double kStraight = 0.01;                  // of its half width
+constexpr double kTurning = 0.15;  // cosine from a broad axis to its row below which it is between both directions
 
 /// Broad half of a section on one side of its spine, metres, (u, v, height): `to` by `part` in place of its own.
 struct Half {
@@ -174,16 +176,20 @@ double hair_metres(const Trail& trail) {
     return touching > 1e-9 ? touching_hair(trail) / touching : 0;
 }
 
-/// Part of an outermost strip's half width, towards its free edge, up to which the hair of a toe touches. `straight`:
-/// metres, by which the line through its spine and its neighbour's goes back from spine to edge.
+/// Part of an outermost strip's half width, −1 to 1 towards its free edge, up to which the hair of a toe touches: that
+/// is long enough to reach the surface, or lies on it beside the spine's. `straight`: metres, by which the line through
+/// its spine and its neighbour's goes back from spine to edge.
 double toe_reach(const Trail& trail, double straight) {
     constexpr int kSteps = 16;
-    const double touching = touching_hair(trail), drop = trail.edge_short - straight;
-    if (trail.edge_short <= touching) return 1;
-    double before = 0;
-    for (int i = 1; i <= kSteps; ++i) {
+    const double drop = trail.edge_short - straight, lying = touching_hair(trail);
+    // Hair that touches with its point alone does not lie.
+    const double lies = smooth_step(0.5 * lying / trail.cuts.front().half_height());
+    const double reaches = std::max(trail.pressed, std::lerp(trail.pressed, lying, lies));
+    if (trail.edge_short <= reaches) return 1;
+    double before = -straight;
+    for (int i = 1 - kSteps; i <= kSteps; ++i) {
         const double s = static_cast<double>(i) / kSteps, missing = s * straight + drop * Cut::drop_part(s);
-        if (missing > touching) return (i - 1 + (touching - before) / (missing - before)) / kSteps;
+        if (missing > reaches) return (i - 1 + std::clamp((reaches - before) / (missing - before), 0.0, 1.0)) / kSteps;
         before = missing;
     }
     return 1;
@@ -195,6 +201,23 @@ void bound_toe(Cut& cut, const Halves& halves, double reach) {
     const bool with_row = way_along(halves.row, cut.broad(), 1) >= 0, free_with_row = !halves.to_next;
     double& side = free_with_row == with_row ? cut.reach.y : cut.reach.x;
     side = std::min(side, reach);
+}
+
+/// Lets the hair at the free edge of an outermost strip stand over its foot, as little as it is bent. `hair`: as in
+/// `bend_section`.
+void stand_ahead(Cut& cut, const Trail& trail, const Halves& halves, const Vec2& hair) {
+    if (halves.to_next.has_value() == halves.to_last.has_value() || !(trail.pressed > 0)) return;
+    const Vec2 broad(cut.broad());
+    const double size = glm::length(broad), half = Cut::kStripChord * size;
+    if (!(half > 1e-9)) return;
+    const double across = std::abs(broad.x * hair.y - broad.y * hair.x) / size;
+    const double part = smooth_step((size / glm::length(cut.broad()) - kLies) / (kLiesFlat - kLies)) *
+                        smooth_step((across - kOblique) / (kSquareTo - kOblique));
+    const double unbent = 1 - std::sqrt(std::max(0.0, 1 - trail.edge_short / trail.pressed));
+    const double ahead = part * unbent * glm::dot(trail.foot - cut.centre, hair), most = kFarAhead * half;
+    const bool with_row = way_along(halves.row, cut.broad(), 1) >= 0, free_with_row = !halves.to_next;
+    (free_with_row == with_row ? cut.ahead_hi : cut.ahead_lo) = std::clamp(ahead, -most, most) * hair;
+    cut.drop *= 1 - part;
 }
 
 /// Whether `other` is the next in its row, and as many of its sections are known.
@@ -242,6 +265,7 @@ void fill_rows(Recycled<Trail>& trails) {
             const double from_heel = glm::dot(spine - trail.cuts.back().centre, run) / (length * length);
             const double missing = trail.edge_short * std::clamp(from_heel, 0.0, 1.0);
             bend_section(trail.cuts[i], halves[k][i], spine, run / length, missing);
+            if (trail.edge_short > 0) stand_ahead(trail.cuts[i], trail, halves[k][i], run / length);
         }
     }
 }

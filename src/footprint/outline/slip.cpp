@@ -45,6 +45,28 @@ const Trail* same_hair(const Trail& trail, std::span<const Trail> before) {
 
 }  // namespace
 
+Cut cut_between(const Cut& p, const Cut& q, double f) {
+    const auto unit = [](const Vec3& v, const Vec3& otherwise) {
+        const double size = glm::length(v);
+        return size > 1e-9 ? v / size : otherwise;
+    };
+    const Vec2 turn = glm::mix(p.turn, q.turn, f);
+    return {glm::mix(p.centre, q.centre, f),
+            std::lerp(p.z, q.z, f),
+            std::lerp(p.a, q.a, f),
+            std::lerp(p.b, q.b, f),
+            unit(glm::mix(p.e, q.e, f), p.e),
+            unit(glm::mix(p.m, q.m, f), p.m),
+            glm::dot(turn, turn) > 1e-6 ? glm::normalize(turn) : p.turn,
+            glm::mix(p.slant, q.slant, f),
+            glm::mix(p.bow, q.bow, f),
+            glm::mix(p.drop, q.drop, f),
+            p.free_side,
+            glm::mix(p.reach, q.reach, f),
+            glm::mix(p.ahead_lo, q.ahead_lo, f),
+            glm::mix(p.ahead_hi, q.ahead_hi, f)};
+}
+
 void change_frame(Recycled<Trail>& trails, const Frame& from, const Frame& to) {
     const auto to_other = [&](const Vec3& v) {
         const Vec3 world = v.x * from.t + v.y * from.b + v.z * from.n;
@@ -58,6 +80,8 @@ void change_frame(Recycled<Trail>& trails, const Frame& from, const Frame& to) {
             cut.slant = Vec2(to_other(Vec3(cut.slant, 0)));
             cut.bow = Vec2(to_other(Vec3(cut.bow, 0)));
             cut.drop = Vec2(to_other(Vec3(cut.drop, 0)));
+            cut.ahead_lo = Vec2(to_other(Vec3(cut.ahead_lo, 0)));
+            cut.ahead_hi = Vec2(to_other(Vec3(cut.ahead_hi, 0)));
         }
 }
 

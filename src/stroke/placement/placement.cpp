@@ -54,7 +54,9 @@ HolderOptions holder_options(const brush::Preset& preset) {
             .lean = preset.lean,
             .across = is_bent_across(preset),
             .foam = brush::is_foam(preset),
-            .turned = has_lag_by_turn(preset)};
+            .turned = has_lag_by_turn(preset),
+            .toe = preset.toe,
+            .toe_end = preset.toe > 0 ? 0.5 * preset.width : 0};
 }
 
 HolderOptions holder_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh) {

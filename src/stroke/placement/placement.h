@@ -108,6 +108,8 @@ struct HolderOptions {
     bool across = false;  ///< `is_bent_across`: lean and tip lag are across the broad side; false: along the path
     bool foam = false;    ///< a sponge: a dot is pressed straight down
     bool turned = false;  ///< `has_lag_by_turn`: the tip lag differs on the edge and across the broad side
+    double toe = 0;       ///< metres by which the hair at the edges of a wide ferrule is shorter; 0: no toe
+    double toe_end = 0;   ///< metres that the hand goes on while it lifts a toe from `toe`: its stroke ends so round
     std::shared_ptr<Drapes> drapes = {};  ///< lines that strokes of one placement share; empty: each walks its own
 };
 

@@ -143,6 +143,12 @@ StrokeSamples add_turn_samples(const StrokeSamples& trace, const HolderOptions& 
 /// already tilts it ahead by more than that. A blade leans so at any landing, over `blade_landing` at least. It turns
 /// as late as the string (`BladeRoll`).
 ///
+/// Where a toe lifts on its broad side, in a path that turns by less than 14 to 26°, the lead λ along the path falls to
+///
+///     λ(s) = min over s' ≥ s of λ(s') + (s' − s) − toe_end/toe · (what of the toe is lifted from s to s'),
+///
+/// so that the hand does not go back, and goes on by `toe_end` while it lifts the toe: the edges leave first.
+///
 /// A holder upright to 0.05 rad sets the brush down plumb and reaches its lean within 0.3 lengths of the tuft.
 ///
 /// The hand's speed bounds the holder's. Over a surface of curvature κ, while the tuft is pressed,
