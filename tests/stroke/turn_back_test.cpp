@@ -102,6 +102,35 @@ TEST(TurnBack, AlongAStencilTheHandKeepsItsPressure) {
     }
 }
 
+// A flat that keeps its roll draws a round as a broad nib does: broad, thin, broad. On its edge the hand went back by
+// 1.6 mm, to the lag of hair that is set down there, and the hair that still lay was pushed: steps and a hook.
+TEST(TurnBack, ThePartOfARoundOnItsEdgeIsNone) {
+    constexpr double kTurn = 4.2, kLands = 8e-3;
+    static WidthTables tables;
+    for (const char* brush : {"flat-12", "filbert-12"})
+        for (const double radius : {16e-3, 25e-3}) {
+            StrokeSamples trace;
+            for (int i = 0; i <= 400; ++i) {
+                const double a = kTurn * i / 400;
+                trace.samples.push_back(
+                    {.time = radius * a / 0.05,
+                     .position = radius * Vec3(std::sin(a), -std::cos(a), 0),
+                     .pressure = 0.45 * std::min({1.0, radius * a / kLands, radius * (kTurn - a) / kLands}),
+                     .roll = 0.5 * std::numbers::pi});
+            }
+            const StrokeSamples led = compensate_tip_lag(trace, tables.holder(brush));
+            const std::size_t set_down = led.samples.size() - trace.samples.size();
+            double back = 0;  // metres, against the path, while it is pressed
+            for (std::size_t i = 1; i < trace.samples.size(); ++i) {
+                const StrokeSample &p = trace.samples[i - 1], &q = trace.samples[i];
+                if (std::min(p.pressure, q.pressure) < 0.449) continue;
+                const Vec3 gone = led.samples[set_down + i].position - led.samples[set_down + i - 1].position;
+                back += std::max(0.0, -glm::dot(gone, glm::normalize(q.position - p.position)));
+            }
+            EXPECT_LT(back, 1e-4) << brush << ' ' << radius;
+        }
+}
+
 /// How far ink lies from all discs of `radius` within the ink, at most, metres: the longest spike or thread beside a
 /// stroke.
 double longest_spike(const PlaneInk& ink, double half_width, double radius) {

@@ -182,11 +182,25 @@ DiskCache shared_tip_lag_cache() {
     return DiskCache(cache_folder("tip_lags"), std::uintmax_t{1} << 20);
 }
 
-FollowedTurn::FollowedTurn(double tuft_length, double turn) : lambda_(kFallsOver * tuft_length), turn_(turn) {}
+FollowedTurn::FollowedTurn(double tuft_length, double turn) : lambda_(kFallsOver * tuft_length), turn_(turn) {
+    lay();
+}
+
+void FollowedTurn::lay() {
+    laid_ = std::max(laid_, std::abs(std::remainder(turn_, std::numbers::pi)));
+}
+
+double FollowedTurn::turn() const {
+    const double from_edge = std::remainder(turn_, std::numbers::pi), broad = 0.5 * std::numbers::pi;
+    if (std::abs(from_edge) >= laid_) return turn_;
+    return broad - (broad - laid_) * from_edge / laid_;
+}
 
 double FollowedTurn::follow(double turn, double gone) {
     const double left = std::remainder(turn - turn_, std::numbers::pi);
-    return turn_ += left * -std::expm1(-gone / lambda_);
+    turn_ += left * -std::expm1(-gone / lambda_);
+    lay();
+    return this->turn();
 }
 
 namespace {

@@ -103,19 +103,25 @@ double lean_string(const HolderOptions& options);
 /// `options.across`, that of the ferrule's y.
 StrokeSamples lean_holder(StrokeSamples trace, const HolderOptions& options);
 
-/// Turn of a wide ferrule from its path as its hair has followed it: hair falls over from its edge to its broad side,
-/// and back, while it is dragged by about its lag. With Δ what is left of the turn, mod π, and s the path's length,
-/// dΔ/ds = −Δ/λ, λ half the tuft's length.
+/// Turn of a wide ferrule from its path as its hair has followed it: hair falls over from its edge to its broad side
+/// while it is dragged by about its lag. With Δ what is left of the turn, mod π, and s the path's length,
+/// dΔ/ds = −Δ/λ, λ half the tuft's length. Hair that lies stays down: where the turn φ comes back from the broadest α
+/// to the edge, and past it to −α, the hair goes round by its broad side, at π/2 − (π/2 − α) φ/α. A flat at one roll so
+/// goes round a curve without standing up where its line is thin.
 class FollowedTurn {
   public:
     /// `turn`: radians, in which the hair lies at first.
     FollowedTurn(double tuft_length, double turn);
-    double turn() const { return turn_; }
+    /// Returns the turn in which the hair lies, radians, mod π.
+    double turn() const;
     /// Returns the turn in which the hair lies after a further `gone` metres at a ferrule turned by `turn` radians.
     double follow(double turn, double gone);
 
   private:
+    void lay();
+
     double lambda_, turn_;
+    double laid_ = 0;  // radians, broadest turn from the edge up to now
 };
 
 /// Speed of setting down, ahead and down together: over the speed of the trace, and the least speed of the trace that
