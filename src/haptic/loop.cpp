@@ -119,18 +119,25 @@ double LatenessHistogram::quantile(double share) const {
 }
 
 struct Loop::State {
+    struct Signals {
+        Semaphore posed, answered;
+    };
+    struct Threads {
+        std::thread servo, solver, record;
+    };
+
     Device& device;
     HairSolver solver;
     LoopOptions options;
     Servo servo;
     std::atomic<bool> running{false}, released{false};
-    Semaphore posed, answered;
+    Signals signals;
     Latest latest;
     BoundedQueue<SolvedPose, 4096> solved;
     Counts counts;
     RecentForces recent;
     Record record;
-    std::thread servo_thread, solver_thread, record_thread;
+    Threads threads;
     LoopStatus seen;
     bool locked = false;
 
@@ -149,7 +156,7 @@ bool Loop::State::wait_for_answer(std::uint64_t tick, std::int64_t until, HairAn
     for (;;) {
         any = latest.answer.read(newest) || any;
         if (any && newest.pose.tick == tick) return true;
-        if (!answered.wait_until(until)) return false;
+        if (!signals.answered.wait_until(until)) return false;
     }
 }
 
@@ -168,10 +175,10 @@ void Loop::State::report(LoopStatus& now, const ServoOutput& out, const RootPose
         now.grip = state->rotation;
         now.buttons = state->buttons;
     }
-    ++now.periods;
+    ++now.counts.periods;
     now.realtime = counts.with_priority.load() == 2;
-    now.lost_poses = solved.overflow();
-    now.unconverged = counts.unconverged.load(std::memory_order_relaxed);
+    now.counts.lost_poses = solved.overflow();
+    now.counts.unconverged = counts.unconverged.load(std::memory_order_relaxed);
     latest.status.write(now);
 }
 
@@ -206,14 +213,14 @@ void Loop::State::run_servo() {
         const RootPose asked = servo.begin(tick, fresh ? &state : nullptr, wanted);
         if (servo.engaged()) {
             latest.pose.write(asked);
-            posed.post();
-            now.late_solves += !wait_for_answer(tick, due + kWaitNs, newest, any);
-            ++now.solves;
+            signals.posed.post();
+            now.counts.late_solves += !wait_for_answer(tick, due + kWaitNs, newest, any);
+            ++now.counts.solves;
         }
         const ServoOutput out = servo.finish(any ? &newest : nullptr);
         device.send(out.command);
-        now.cycle.add(1e-9 * static_cast<double>(clock_ns() - due));
-        now.allocations = allocations() - allocated + counts.solver_allocations.load(std::memory_order_relaxed);
+        now.counts.cycle.add(1e-9 * static_cast<double>(clock_ns() - due));
+        now.counts.allocations = allocations() - allocated + counts.solver_allocations.load(std::memory_order_relaxed);
         report(now, out, asked, fresh ? &state : nullptr);
         remember_force(out.force);
         if (options.record) {
@@ -249,7 +256,7 @@ void Loop::State::run_solver() {
     fill_store(static_cast<int>(solver.tuft().spines.size()));
     const std::uint64_t allocated = allocations();
     while (true) {
-        posed.wait();
+        signals.posed.wait();
         if (!running.load(std::memory_order_relaxed)) return;
         RootPose asked;
         if (!latest.pose.read(asked)) continue;
@@ -259,7 +266,7 @@ void Loop::State::run_solver() {
         if (latest.added.read(added)) solver.set_added(added);
         const HairAnswer found = solver.solve(asked);
         latest.answer.write(found);
-        answered.post();
+        signals.answered.post();
         counts.solver_allocations.store(allocations() - allocated, std::memory_order_relaxed);
         if (!found.converged) counts.unconverged.fetch_add(1, std::memory_order_relaxed);
         solved.push({asked, found.touching});
@@ -293,18 +300,18 @@ void Loop::start() {
     if (s.running.exchange(true)) return;
     // Pages that are there stay; later ones are not counted against the limit, so that painting gets its memory.
     s.locked = ::mlockall(MCL_CURRENT | MCL_ONFAULT) == 0;
-    s.solver_thread = std::thread([&s] { s.run_solver(); });
-    s.servo_thread = std::thread([&s] { s.run_servo(); });
-    if (s.options.record) s.record_thread = std::thread([&s] { s.run_record(); });
+    s.threads.solver = std::thread([&s] { s.run_solver(); });
+    s.threads.servo = std::thread([&s] { s.run_servo(); });
+    if (s.options.record) s.threads.record = std::thread([&s] { s.run_record(); });
 }
 
 void Loop::stop() {
     State& s = *state_;
     if (!s.running.exchange(false)) return;
-    s.servo_thread.join();
-    s.posed.post();
-    s.solver_thread.join();
-    if (s.record_thread.joinable()) s.record_thread.join();
+    s.threads.servo.join();
+    s.signals.posed.post();
+    s.threads.solver.join();
+    if (s.threads.record.joinable()) s.threads.record.join();
     s.record.drain();
     if (s.locked) ::munlockall();
 }

@@ -38,6 +38,16 @@ struct LoopOptions {
     std::uint64_t (*count_allocations)() = nullptr;
 };
 
+/// Counts since the loop was started.
+struct LoopCounts {
+    std::uint64_t periods = 0, solves = 0;
+    std::uint64_t late_solves = 0;  ///< answers that came after 0.6 ms
+    std::uint64_t lost_poses = 0;   ///< that did not fit into the queue to the painting
+    std::uint64_t unconverged = 0;  ///< solves that ended at their limits
+    std::uint64_t allocations = 0;  ///< of both threads since their first period
+    LatenessHistogram cycle;        ///< from the time a period is due to its force being sent
+};
+
 /// A snapshot of the loop.
 struct LoopStatus {
     bool running = false;
@@ -54,12 +64,7 @@ struct LoopStatus {
     Vec3 device{0};             ///< m, arm's frame: the same place
     Quat grip{1, 0, 0, 0};      ///< arm's frame
     std::uint32_t buttons = 0;  ///< of the grip, one bit each
-    std::uint64_t periods = 0, solves = 0;
-    std::uint64_t late_solves = 0;  ///< answers that came after 0.6 ms
-    std::uint64_t lost_poses = 0;   ///< that did not fit into the queue to the painting
-    std::uint64_t unconverged = 0;  ///< solves that ended at their limits
-    std::uint64_t allocations = 0;  ///< of both threads since their first period
-    LatenessHistogram cycle;        ///< from the time a period is due to its force being sent
+    LoopCounts counts;
 };
 
 /// Servo and solver as threads. `device` must outlive the loop.

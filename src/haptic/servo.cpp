@@ -17,25 +17,25 @@ void Servo::place_arm(const ServoControl& control, bool clutched) {
         const bool turned = w.rotation != workspace_.rotation || scaled;
         const bool moved = w.offset != workspace_.offset && verdict_.engaged;
         if (placed_ && (clutched_ || turned || moved))
-            shift_ = glm::conjugate(w.rotation) * (arm_ - w.to_world(device_));
+            shift_ = glm::conjugate(w.rotation) * (arm_ - w.to_world(grip_.position));
         workspace_ = w;
     }
-    arm_ = workspace_.to_world(device_) + workspace_.rotation * shift_;
-    rotation_ = glm::normalize(workspace_.rotation * grip_ * glm::conjugate(workspace_.grip));
+    arm_ = workspace_.to_world(grip_.position) + workspace_.rotation * shift_;
+    rotation_ = glm::normalize(workspace_.rotation * grip_.rotation * glm::conjugate(workspace_.grip));
     clutched_ = false;
-    placed_ = known_;
+    placed_ = grip_.known;
 }
 
 RootPose Servo::begin(std::uint64_t tick, const DeviceState* fresh, const ServoControl& control) {
     tick_ = tick;
-    if (fresh) buttons_ = fresh->buttons;
-    const bool clutched = control.clutched || (buttons_ & control.clutch_buttons) != 0;
+    if (fresh) grip_.buttons = fresh->buttons;
+    const bool clutched = control.clutched || (grip_.buttons & control.clutch_buttons) != 0;
     verdict_ = safety_.check(tick, fresh, control.paused || clutched, control.emergency);
-    const bool usable = fresh && (verdict_.engaged || verdict_.fault == Fault::paused || !known_);
+    const bool usable = fresh && (verdict_.engaged || verdict_.fault == Fault::paused || !grip_.known);
     if (usable && glm::length(fresh->position) < 1e3) {  // NaN is not less
-        device_ = fresh->position;
-        grip_ = fresh->rotation;
-        known_ = true;
+        grip_.position = fresh->position;
+        grip_.rotation = fresh->rotation;
+        grip_.known = true;
     }
     place_arm(control, clutched);
     if (verdict_.restart) {
@@ -45,14 +45,14 @@ RootPose Servo::begin(std::uint64_t tick, const DeviceState* fresh, const ServoC
     return {.tick = tick,
             .position = law_.root.position,
             .rotation = rotation_,
-            .buttons = buttons_,
+            .buttons = grip_.buttons,
             .taken_up = restarted_};
 }
 
 ServoOutput Servo::finish(const HairAnswer* newest) {
     ServoOutput out{.root = law_.root.position,
                     .arm = arm_,
-                    .device = device_,
+                    .device = grip_.position,
                     .fault = verdict_.fault,
                     .pass = verdict_.pass,
                     .engaged = verdict_.engaged};

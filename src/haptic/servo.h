@@ -56,6 +56,14 @@ class Servo {
     const LawState& law() const { return law_; }
 
   private:
+    /// The grip as the arm last reported it, in the arm's frame.
+    struct Grip {
+        bool known = false;
+        Vec3 position{0};  // m
+        Quat rotation{1, 0, 0, 0};
+        std::uint32_t buttons = 0;
+    };
+
     void place_arm(const ServoControl& control, bool clutched);
 
     LawOptions options_;
@@ -63,12 +71,12 @@ class Servo {
     Safety safety_;
     Verdict verdict_;
     Workspace workspace_;
-    Vec3 device_{0}, arm_{0};  // m: the arm in its frame and in the world
-    Vec3 shift_{0};            // m, in the workspace's axes, by clutch and turns of the workspace
-    Quat rotation_{1, 0, 0, 0}, grip_{1, 0, 0, 0};
-    std::uint32_t buttons_ = 0;
+    Grip grip_;
+    Vec3 arm_{0};    // m, world
+    Vec3 shift_{0};  // m, in the workspace's axes, by clutch and turns of the workspace
+    Quat rotation_{1, 0, 0, 0};
     std::uint64_t tick_ = 0, restarted_ = 0;
-    bool known_ = false, placed_ = false, clutched_ = false;
+    bool placed_ = false, clutched_ = false;
 };
 
 }  // namespace tuft::haptic

@@ -62,12 +62,12 @@ TrialReport run_trial(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface
         if (servo.engaged()) {
             answer = solver.solve(pose);
             answered = true;
-            ++report.solves;
-            report.unconverged += !answer.converged;
+            ++report.solves.count;
+            report.solves.unconverged += !answer.converged;
             const brush::SolverWork& work = solver.state().work;
-            report.most_evaluations = std::max(report.most_evaluations, work.evaluations + work.values);
-            report.evaluations += static_cast<std::uint64_t>(work.evaluations + work.values);
-            report.seconds.push_back(static_cast<float>(answer.seconds));
+            report.solves.most_evaluations = std::max(report.solves.most_evaluations, work.evaluations + work.values);
+            report.solves.evaluations += static_cast<std::uint64_t>(work.evaluations + work.values);
+            report.solves.seconds.push_back(static_cast<float>(answer.seconds));
             if (options.record) {
                 report.roots.push_back({pose, answer.touching});
                 report.arms.push_back(arm.position());
@@ -129,13 +129,13 @@ void merge(TrialReport& into, const TrialReport& from) {
     into.largest_force = std::max(into.largest_force, from.largest_force);
     into.deepest = std::max(into.deepest, from.deepest);
     into.periods += from.periods;
-    into.solves += from.solves;
-    into.unconverged += from.unconverged;
-    into.most_evaluations = std::max(into.most_evaluations, from.most_evaluations);
-    into.evaluations += from.evaluations;
+    into.solves.count += from.solves.count;
+    into.solves.unconverged += from.solves.unconverged;
+    into.solves.most_evaluations = std::max(into.solves.most_evaluations, from.solves.most_evaluations);
+    into.solves.evaluations += from.solves.evaluations;
     into.limited += from.limited;
     into.contacts += from.contacts;
-    into.seconds.insert(into.seconds.end(), from.seconds.begin(), from.seconds.end());
+    into.solves.seconds.insert(into.solves.seconds.end(), from.solves.seconds.begin(), from.solves.seconds.end());
     into.hash = hash_bytes(&from.hash, sizeof from.hash, into.hash);
 }
 

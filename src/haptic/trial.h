@@ -53,6 +53,15 @@ struct TrialOptions {
     bool record = false;  ///< fills `TrialReport::forces`, `roots` and `arms`
 };
 
+/// Solves of a trial and what they cost.
+struct TrialSolves {
+    std::size_t count = 0, unconverged = 0;
+    /// Evaluations of the potential in one solve, of its values and with derivatives, at most.
+    int most_evaluations = 0;
+    std::uint64_t evaluations = 0;  ///< of all solves together
+    std::vector<float> seconds;     ///< of each
+};
+
 /// Extremes over a trial. Energies are the work of the force on the hand along the true path of the arm, not along the
 /// measured one. Each contact counts from its own beginning: over an hour the arm's friction would cover any gain.
 struct TrialReport {
@@ -62,13 +71,10 @@ struct TrialReport {
     double largest_step_hard = 0;  ///< N, the same while ferrule or handle is on the surface, or 10 ms after
     double largest_force = 0;      ///< N
     double deepest = 0;            ///< m, of the arm behind the root while it is held on the surface
-    std::size_t periods = 0, solves = 0, unconverged = 0, limited = 0, contacts = 0;
-    /// Evaluations of the potential in one solve, of its values and with derivatives, at most.
-    int most_evaluations = 0;
-    std::uint64_t evaluations = 0;  ///< of all solves together
-    std::vector<float> seconds;     ///< of each solve
-    std::uint64_t hash = 0;         ///< of all forces
-    std::vector<Vec3> forces;       ///< N, on the hand, one per period
+    std::size_t periods = 0, limited = 0, contacts = 0;
+    TrialSolves solves;
+    std::uint64_t hash = 0;    ///< of all forces
+    std::vector<Vec3> forces;  ///< N, on the hand, one per period
     std::vector<SolvedPose> roots;
     std::vector<Vec3> arms;  ///< m, where the arm truly was at each of `roots`
     Vec3 last_hair{0};       ///< N, of the hair at the end

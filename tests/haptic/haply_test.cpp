@@ -164,9 +164,9 @@ Session paint_over_the_wire(ServerFault fault) {
             take();
             session.status = loop.status();
             session.had_force = session.had_force || glm::length(session.status.force) > 0.02;
-            if (!began && (server.faulty || fault == ServerFault::none)) began = session.status.periods;
+            if (!began && (server.faulty || fault == ServerFault::none)) began = session.status.counts.periods;
             session.seen = session.had_force && session.poses > 100 && began &&
-                           is_seen(fault, session.status, session.status.periods - *began);
+                           is_seen(fault, session.status, session.status.counts.periods - *began);
         }
         loop.stop();
         take();

@@ -75,8 +75,8 @@ std::vector<SolvedPose> run_until_pressed(Loop& loop) {
         std::this_thread::sleep_for(10ms);
         while (loop.pop(pose)) poses.push_back(pose);
         const LoopStatus status = loop.status();
-        if (since == 0 && glm::length(status.force) > 0.05) since = status.periods;
-        if (since > 0 && status.periods >= since + kPressed) break;
+        if (since == 0 && glm::length(status.force) > 0.05) since = status.counts.periods;
+        if (since > 0 && status.counts.periods >= since + kPressed) break;
     }
     loop.stop();
     while (loop.pop(pose)) poses.push_back(pose);
@@ -87,10 +87,10 @@ TEST(Loop, TheServoAllocatesNothingAndTheQueueHoldsWhatWasSolved) {
     Live live;
     const std::vector<SolvedPose> poses = run_until_pressed(live.loop);
     const LoopStatus status = live.loop.status();
-    EXPECT_EQ(status.allocations, 0u);
-    EXPECT_GT(status.periods, 100u);
-    EXPECT_EQ(status.cycle.count, status.periods);
-    EXPECT_EQ(status.lost_poses, 0u);
+    EXPECT_EQ(status.counts.allocations, 0u);
+    EXPECT_GT(status.counts.periods, 100u);
+    EXPECT_EQ(status.counts.cycle.count, status.counts.periods);
+    EXPECT_EQ(status.counts.lost_poses, 0u);
     EXPECT_EQ(status.force, Vec3{0});
     EXPECT_FALSE(status.running);
     ASSERT_GT(poses.size(), 100u);
@@ -103,7 +103,7 @@ TEST(Loop, WideTuftsAllocateNothingEither) {
     for (const char* brush : {"bright-12", "hake-60", "sponge-30", "leaf-28"}) {
         Live live(brush);
         EXPECT_FALSE(run_until_pressed(live.loop).empty()) << brush;
-        EXPECT_EQ(live.loop.status().allocations, 0u) << brush;
+        EXPECT_EQ(live.loop.status().counts.allocations, 0u) << brush;
     }
 }
 

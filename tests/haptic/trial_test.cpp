@@ -336,8 +336,8 @@ TEST(Trial, NoSampleCostsMoreThanAFewHundredEvaluations) {
             const brush::Tuft tuft = tuft_of("wolf-medium");
             const TrialReport r = run_trial(tuft, *f.surface, hand_path(motion, f.place, tuft.preset),
                                             options_for(device_preset("touch")));
-            EXPECT_GT(r.most_evaluations, 0);
-            EXPECT_LE(r.most_evaluations, 200);
+            EXPECT_GT(r.solves.most_evaluations, 0);
+            EXPECT_LE(r.solves.most_evaluations, 200);
         }
 }
 
@@ -348,8 +348,8 @@ TEST(Trial, RestAtAnEdgeTakesFewEvaluations) {
     const brush::Tuft tuft = tuft_of("wolf-medium");
     const TrialReport r = run_trial(tuft, *f.surface, hand_path(HandMotion::rest, f.place, tuft.preset),
                                     options_for(device_preset("touch")));
-    EXPECT_GT(r.solves, 1000u);
-    EXPECT_LT(static_cast<double>(r.evaluations), 5.0 * static_cast<double>(r.solves));
+    EXPECT_GT(r.solves.count, 1000u);
+    EXPECT_LT(static_cast<double>(r.solves.evaluations), 5.0 * static_cast<double>(r.solves.count));
 }
 
 TEST(Trial, RestIsSteady) {

@@ -94,7 +94,7 @@ void Arm::open_simulated() {
 
 // Where the arm's space lies: so that the brush begins above the start, or its tip where it was.
 void Arm::place(const ArmScene& scene) {
-    if (scene.surface == scene_.surface && status_.periods > 0) {
+    if (scene.surface == scene_.surface && status_.counts.periods > 0) {
         const double longer = scene.brush.length - scene_.brush.length;
         const Vec3 root = status_.arm + longer * (status_.rotation * Vec3{0, 0, 1});
         workspace_ = workspace_.regripped(status_.device, root);

@@ -208,7 +208,7 @@ void force_plot(Session& s) {
 void lateness_plot(Session& s) {
     Ui& ui = s.ui;
     const haptic::LoopStatus now = s.arm.arm ? s.arm.arm->status() : haptic::LoopStatus{};
-    const haptic::LatenessHistogram& cycle = now.cycle;
+    const haptic::LatenessHistogram& cycle = now.counts.cycle;
     constexpr std::size_t kShown = 30;  // bins, 3 ms
     const Plot plot = begin_plot(ui, 44);
     std::uint64_t most = 1;
@@ -306,7 +306,7 @@ void arm_panel(Session& s) {
 
 void arm_marks(const Session& s, const render::GlCamera& camera) {
     const ArmState& a = s.arm;
-    if (!a.arm || !a.arm->feels() || a.on_palette || a.arm->status().periods == 0) return;
+    if (!a.arm || !a.arm->feels() || a.on_palette || a.arm->status().counts.periods == 0) return;
     const std::array<Vec3, 8> corners = a.arm->reach();
     const unsigned colour = a.arm->at_limit() ? kBad : IM_COL32(255, 176, 32, 110);
     ImDrawList* draw = ImGui::GetBackgroundDrawList();

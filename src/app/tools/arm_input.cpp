@@ -127,7 +127,7 @@ void ArmInput::update(double now, bool pointer_draws) {
         a.begin = on_palette_ ? stroke_to_stir(s) : stroke_to_begin(s);
     }
     post_arm_strokes(a, *s.paint_thread);
-    const std::uint64_t periods = a.arm->poll().periods;
+    const std::uint64_t periods = a.arm->poll().counts.periods;
     if (periods < counted_periods_ || now - counted_at_ > kCounted) {
         if (periods > counted_periods_) a.rate = static_cast<double>(periods - counted_periods_) / (now - counted_at_);
         counted_periods_ = periods;
@@ -179,7 +179,7 @@ bool ArmInput::cancel() {
 
 std::optional<brush::Pose> ArmInput::hover() const {
     const ArmState& a = session_.arm;
-    if (!a.arm || !a.arm->feels() || on_palette_ || a.arm->status().periods == 0) return std::nullopt;
+    if (!a.arm || !a.arm->feels() || on_palette_ || a.arm->status().counts.periods == 0) return std::nullopt;
     const haptic::LoopStatus& now = a.arm->status();
     return brush::Pose{now.engaged ? now.root : now.arm, now.rotation, 0};
 }

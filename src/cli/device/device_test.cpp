@@ -107,7 +107,7 @@ double quantile(std::vector<float> values, double q) {
 
 nlohmann::json to_json(const Trials& trials) {
     const haptic::TrialReport& worst = trials.worst;
-    const std::vector<float>& solves = worst.seconds;
+    const std::vector<float>& solves = worst.solves.seconds;
     const TrialsDone &hands = trials.hands, &hours = trials.hours;
     return {{"complete", trials.complete},
             {"hands", hands.count},
@@ -123,10 +123,10 @@ nlohmann::json to_json(const Trials& trials) {
             {"trials", trials.motions.count + hands.count + hours.count},
             {"simulated_s", static_cast<double>(worst.periods) * haptic::kPeriod},
             {"contacts", worst.contacts},
-            {"most_evaluations", worst.most_evaluations},
-            {"mean_evaluations",
-             static_cast<double>(worst.evaluations) / static_cast<double>(std::max<std::size_t>(worst.solves, 1))},
-            {"unconverged_percent", percent(worst.unconverged, worst.solves)},
+            {"most_evaluations", worst.solves.most_evaluations},
+            {"mean_evaluations", static_cast<double>(worst.solves.evaluations) /
+                                     static_cast<double>(std::max<std::size_t>(worst.solves.count, 1))},
+            {"unconverged_percent", percent(worst.solves.unconverged, worst.solves.count)},
             {"solve_us",
              {{"p50", 1e6 * quantile(solves, 0.5)},
               {"p999", 1e6 * quantile(solves, 0.999)},
@@ -134,12 +134,12 @@ nlohmann::json to_json(const Trials& trials) {
 }
 
 void add_loop(nlohmann::json& out, const haptic::LoopStatus& loop) {
-    out["late_percent"] = percent(loop.cycle.late, loop.cycle.count);
-    out["worst_cycle_ms"] = 1e3 * loop.cycle.worst;
-    out["p999_cycle_ms"] = 1e3 * loop.cycle.quantile(0.999);
-    out["allocations"] = loop.allocations;
-    out["late_solves_percent"] = percent(loop.late_solves, loop.solves);
-    out["lost_poses"] = loop.lost_poses;
+    out["late_percent"] = percent(loop.counts.cycle.late, loop.counts.cycle.count);
+    out["worst_cycle_ms"] = 1e3 * loop.counts.cycle.worst;
+    out["p999_cycle_ms"] = 1e3 * loop.counts.cycle.quantile(0.999);
+    out["allocations"] = loop.counts.allocations;
+    out["late_solves_percent"] = percent(loop.counts.late_solves, loop.counts.solves);
+    out["lost_poses"] = loop.counts.lost_poses;
     out["realtime"] = loop.realtime;
     out["memory_locked"] = loop.locked;
 }

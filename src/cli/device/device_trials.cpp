@@ -58,7 +58,7 @@ std::vector<std::optional<Tried>> try_some(std::size_t first, std::size_t n, con
             tried.cpu_seconds = thread_cpu_seconds() - start;
             tried.report.forces = {};
             tried.report.roots = {};
-            if (!keep_seconds) tried.report.seconds = {};
+            if (!keep_seconds) tried.report.solves.seconds = {};
             batch[i] = std::move(tried);
         }
     };
