@@ -136,7 +136,7 @@ PlacedDrawing place_along(std::vector<stroke::JournalEntry>& strokes, const stro
     std::vector<stroke::StrokeSamples*> copies;
     for (std::size_t first = 0; first < strokes.size(); first += n)
         for (const std::size_t i : drawn) copies.push_back(&strokes[first + i].as<stroke::PaintStroke>()->trace);
-    finish_strokes(strokes, copies, {.scale = band.scale, .extent = std::max(band.width, band.height)}, a, console);
+    finish_strokes(strokes, {std::move(copies), band.scale, std::max(band.width, band.height)}, a, console);
     const writer::PathPlace first = writer::place_on(on.path, 0, writer::kBandReach * band.step);
     return {.at = first.position,
             .normal = first.normal,

@@ -135,11 +135,10 @@ void note_placed(const PlacedDrawing& p, const Paint& a, const Box& area, double
 }
 
 std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
-                                            const Paint& a, std::vector<stroke::StrokeSamples*>& drawing,
-                                            DrawnSize& drawn, Console& console) {
+                                            const Paint& a, stroke::PlacedTraces& traces, Console& console) {
     set_mappings(strokes, a);
     const bool all = !a.place.at_mm.empty() || !a.place.on.empty();
-    drawing = stroke::drawing_in(strokes, all);
+    const std::vector<stroke::StrokeSamples*> drawing = stroke::drawing_in(strokes, all);
     const std::vector<stroke::FlatArea*> areas = stroke::areas_in(strokes, all);
     if (drawing.empty() && areas.empty()) return {};
     stroke::arrange_parts(drawing);
@@ -162,7 +161,7 @@ std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& s
                                      Vec2(area.centre()), scale, a.place.mirror};
     stroke::place_drawing(drawing, place);
     stroke::place_areas(areas, place);
-    drawn = {.scale = scale, .extent = scale * std::max(area.size().x, area.size().y)};
+    traces = {drawing, scale, scale * std::max(area.size().x, area.size().y)};
     return placed;
 }
 
@@ -182,12 +181,12 @@ void set_mappings(std::vector<stroke::JournalEntry>& strokes, const Paint& a) {
     }
 }
 
-void finish_strokes(std::vector<stroke::JournalEntry>& strokes, const std::vector<stroke::StrokeSamples*>& drawing,
-                    const DrawnSize& size, const Paint& a, Console& console) {
+void finish_strokes(std::vector<stroke::JournalEntry>& strokes, const stroke::PlacedTraces& drawing, const Paint& a,
+                    Console& console) {
     stroke::WidthTables widths;
     const bool chosen = !a.stroke.brush.empty();
     const stroke::BrushFit fit{.grow = !chosen, .fit = !chosen || a.drawing.fit_brush};
-    stroke::choose_brushes(strokes, {drawing, size.scale, size.extent}, fit, widths);
+    stroke::choose_brushes(strokes, drawing, fit, widths);
     stroke::fill_wide_lines(strokes, a.drawing.wide_lines_mm * kMillimetre, edges_of(a));
     stroke::redip_long_lines(strokes, fit, widths);
     note_widths(stroke::press_to_widths(strokes, widths), fit.fit, console);
@@ -195,10 +194,9 @@ void finish_strokes(std::vector<stroke::JournalEntry>& strokes, const std::vecto
 
 std::optional<PlacedDrawing> place_strokes(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
                                            const Paint& a, Console& console) {
-    std::vector<stroke::StrokeSamples*> drawing;
-    DrawnSize size;
-    const std::optional<PlacedDrawing> placed = place_on_model(strokes, model, a, drawing, size, console);
-    finish_strokes(strokes, drawing, size, a, console);
+    stroke::PlacedTraces traces;
+    const std::optional<PlacedDrawing> placed = place_on_model(strokes, model, a, traces, console);
+    finish_strokes(strokes, traces, a, console);
     return placed;
 }
 

@@ -7,6 +7,7 @@
 
 #include "cli/arguments/arguments.h"
 #include "cli/steps/console.h"
+#include "stroke/drawing/drawing.h"
 #include "stroke/journal/journal.h"
 #include "stroke/surface/model.h"
 
@@ -50,15 +51,10 @@ std::optional<PlacedDrawing> place_strokes(std::vector<stroke::JournalEntry>& st
 /// Sets the mapping of flat strokes and areas: that of `--mapping`, else `drape` for those without a placement.
 void set_mappings(std::vector<stroke::JournalEntry>& strokes, const Paint& arguments);
 
-/// Size of a drawing as painted.
-struct DrawnSize {
-    double scale = 1;   ///< times the size in its file
-    double extent = 0;  ///< metres, the larger side
-};
 /// Last step of every placement: chooses brushes, fills wide lines, dips for long ones and sets the pressures of
-/// widths. `drawing`: traces of `strokes` that were placed with this size; the pointers are invalid afterwards.
-void finish_strokes(std::vector<stroke::JournalEntry>& strokes, const std::vector<stroke::StrokeSamples*>& drawing,
-                    const DrawnSize& size, const Paint& arguments, Console& console);
+/// widths. `drawing`: traces of `strokes`; the pointers are invalid afterwards.
+void finish_strokes(std::vector<stroke::JournalEntry>& strokes, const stroke::PlacedTraces& drawing,
+                    const Paint& arguments, Console& console);
 
 /// Sets the view's direction to the side that the strokes are on; unchanged when they are on several.
 void look_at_strokes(View& view, const std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model);

@@ -179,7 +179,7 @@ namespace {
 
 /// The brush that a stroke is painted with, in the size that fits it. `placed`: the drawing that it is part of; or
 /// null.
-std::string sized_brush(const PaintStroke& s, const PlacedDrawing* placed, const BrushFit& fit, WidthTables& widths,
+std::string sized_brush(const PaintStroke& s, const PlacedTraces* placed, const BrushFit& fit, WidthTables& widths,
                         Films& films) {
     std::string sized = s.brush;
     if (sized.empty() && !fit.otherwise.empty())
@@ -238,7 +238,7 @@ void fill_wide_lines(std::vector<JournalEntry>& entries, double wide, AreaEdges 
     for (const auto& [area, k] : areas) area->low = drawings[k].low, area->high = drawings[k].high;
 }
 
-void choose_brushes(std::vector<JournalEntry>& entries, const PlacedDrawing& drawing, const BrushFit& fit,
+void choose_brushes(std::vector<JournalEntry>& entries, const PlacedTraces& drawing, const BrushFit& fit,
                     WidthTables& widths) {
     // What is done with a brush before a stroke is done with the brush of that stroke.
     const std::unordered_set<const StrokeSamples*> among(drawing.traces.begin(), drawing.traces.end());

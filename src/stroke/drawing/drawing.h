@@ -101,14 +101,14 @@ void place_drawing(std::span<StrokeSamples* const> drawing, const DrawingPlace& 
 void redip_long_lines(std::vector<JournalEntry>& entries, const BrushFit& fit, WidthTables& widths);
 
 /// Traces of a drawing that has been placed.
-struct PlacedDrawing {
-    std::span<StrokeSamples* const> traces = {};
+struct PlacedTraces {
+    std::vector<StrokeSamples*> traces = {};
     double scale = 1;   ///< times the size in the file
     double extent = 0;  ///< metres, as placed
 };
 
 /// Sets the brush of every entry without one, and sizes of brushes as `fit` says. `drawing`: traces of `entries`.
-void choose_brushes(std::vector<JournalEntry>& entries, const PlacedDrawing& drawing, const BrushFit& fit,
+void choose_brushes(std::vector<JournalEntry>& entries, const PlacedTraces& drawing, const BrushFit& fit,
                     WidthTables& widths);
 
 /// A place farther beside the model than this part of its box diagonal is a mistake, not a rounding of its numbers.
