@@ -18,12 +18,27 @@ constexpr double kWidestClosing = 3;  // of `join`: with hardly a bleed nothing 
 // Of the bleed, within bounds in metres: radius of the inner corners of a cut line. Film tears from sharper ones, and
 // the points between two arcs that meet fold over.
 constexpr double kInnerCorner = 0.5, kLeastCorner = 1e-3, kMostCorner = 5e-3;
-constexpr double kApart = 5e-4;   // metres between two pieces that a rounded corner keeps free, as far as it can
+constexpr double kEndOfLine = 3e-3;  // metres, that tell how a seam goes on
+constexpr double kApart = 5e-4;      // metres between two pieces that a rounded corner keeps free, as far as it can
+constexpr double kLeastFilm = 1e-3, kFlatBleed = 3e-3;  // metres round the paint, that panels hold of a bleed
 constexpr double kLeastHole = 3;  // of the bleed, or half of `join`: smaller holes are a nuisance to cut and lay
 
 /// Cells between the rim of the grid and the first row. A regular mesh then has no edge along a row, whose samples
 /// would lie in both triangles or in none.
 const Vec2 kOffGrid{1.382, 1.236};
+
+/// The least distance at which the closing bridges two points `join` apart: √(g² − ¼ join²) = g − bleed.
+double closing_distance(double bleed, double join) {
+    const double half = 0.5 * join;
+    if (half <= bleed) return bleed;
+    const double bridging = (half * half + bleed * bleed) / (2 * std::max(bleed, 1e-9));
+    return std::min(bridging, kWidestClosing * join);
+}
+
+/// Smaller holes are film.
+double hole_radius(double bleed, double join) {
+    return kLeastHole * std::max(bleed, 0.5 * join);
+}
 
 Grid grid_over(const PrintSurface& surface, double margin, double texel) {
     Box2 box{surface.flat[0], surface.flat[0]};
@@ -66,13 +81,20 @@ struct BorderRun {
         return glm::length(line.back() - line.front()) > 0.5 * length;
     }
 
-    /// The line with straight ends `more` metres longer.
+    /// The line with straight ends `more` metres longer. They go on as its last millimetres do: its last edge may be a
+    /// short one that a crossing was moved along.
     std::vector<Vec2> extended(double more) const {
         std::vector<Vec2> out = line;
-        const Vec2 first = line[0] - line[1], last = line.back() - line[line.size() - 2];
-        out.insert(out.begin(), line.front() + more / glm::length(first) * first);
-        out.push_back(line.back() + more / glm::length(last) * last);
+        out.insert(out.begin(), line.front() + more * direction(line.begin(), line.end()));
+        out.push_back(line.back() + more * direction(line.rbegin(), line.rend()));
         return out;
+    }
+
+    /// Unit, at the first of some points, away from the others.
+    static Vec2 direction(auto first, auto end) {
+        auto from = first + 1;
+        while (from + 1 != end && glm::length(*from - *first) < kEndOfLine) ++from;
+        return (*first - *from) / glm::length(*first - *from);
     }
 
     /// What lies more than `reach` and less than that and `depth` beyond a seam: its line moved outwards.
@@ -154,14 +176,6 @@ Region without_small_holes(const Region& region, double radius) {
     return out;
 }
 
-/// The least distance at which the closing bridges two points `join` apart: √(g² − ¼ join²) = g − bleed.
-double closing_distance(const OutlineOptions& options) {
-    const double half = 0.5 * options.join;
-    if (half <= options.bleed) return options.bleed;
-    const double bridging = (half * half + options.bleed * options.bleed) / (2 * std::max(options.bleed, 1e-9));
-    return std::min(bridging, kWidestClosing * options.join);
-}
-
 /// Rounds the inner corners of each piece by the closing of it alone: pieces apart stay apart. `have`: radius that they
 /// have already.
 Region round_inner_corners(const Region& film, double bleed, double have) {
@@ -186,9 +200,17 @@ Region round_inner_corners(const Region& film, double bleed, double have) {
 
 }  // namespace
 
+FilmReach film_reach(double bleed, double join) {
+    FilmReach reach;
+    reach.bleed = std::max(kLeastFilm, std::min(bleed, 0.5 * join + kFlatBleed));
+    reach.around = closing_distance(reach.bleed, join);
+    reach.hole = hole_radius(reach.bleed, join);
+    return reach;
+}
+
 std::vector<Outline> find_outlines(const FilmMesh& film, const Panel& panel, const PrintSurface& surface,
                                    const CoverageFn& coverage, const OutlineOptions& options) {
-    const double around = closing_distance(options);
+    const double around = closing_distance(options.bleed, options.join);
     const Grid grid = grid_over(surface, around + 2 * kLeastCell, options.texel);
     const PaintField paint = find_paint(surface, coverage, grid, options.texel);
     if (!paint.any) return {};
@@ -196,8 +218,7 @@ std::vector<Outline> find_outlines(const FilmMesh& film, const Panel& panel, con
     const Region round =
         round_inner_corners(simplify(film_round(grid, paint.painted, options.bleed, around), 0.5 * kStraight),
                             options.bleed, around - options.bleed);
-    const Region wanted =
-        simplify(without_small_holes(round, kLeastHole * std::max(options.bleed, 0.5 * options.join)), kStraight);
+    const Region wanted = simplify(without_small_holes(round, hole_radius(options.bleed, options.join)), kStraight);
     std::vector<Outline> outlines;
     for (Region& part : separate(intersect(wanted, allowed))) {
         const Vec2 size = box_of(part).size();

@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "decal/panels/select_film.h"
 #include "decal/polygons.h"
 #include "decal/print_surface.h"
 
@@ -20,6 +21,9 @@ struct OutlineOptions {
     /// painted there, and the seam is like any border of the film.
     std::function<double(std::uint32_t label)> overlap;
 };
+
+/// Returns what the panels have to cover for these cut lines. Film of a wide bleed goes on beyond them in the plane.
+FilmReach film_reach(double bleed, double join);
 
 /// One piece of film: an outer ring and its holes, in the panel's plane.
 struct Outline {

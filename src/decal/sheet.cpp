@@ -93,8 +93,7 @@ bool fits_page(const atlas::ChartMesh& chart, const std::vector<Vec2>& flat, con
 
 CutFilm cut_film(const mesh::TriangleMesh& model, const PrintSource& source, const SheetOptions& options) {
     CutFilm cut;
-    const double margin = std::min(std::max(options.bleed, 0.5 * options.join), 0.5 * options.join + kPrintedBleed);
-    cut.film = select_film(model, source.coverage, 1.2 * margin, source.texel);
+    cut.film = select_film(model, source.coverage, film_reach(options.bleed, options.join), source.texel);
     if (cut.film.source.empty()) throw Error("nothing is painted: there is no film to cut");
     PanelOptions panel_options{.max_strain = options.max_strain, .fits = {}, .progress = options.progress};
     panel_options.fits = [&](const atlas::ChartMesh& chart, const std::vector<Vec2>& flat) {

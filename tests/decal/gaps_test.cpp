@@ -4,6 +4,7 @@
 
 #include "decal/ink_areas.h"
 #include "decal/panels/panels.h"
+#include "decal/panels/select_film.h"
 #include "surfaces.h"
 
 namespace tuft::decal {
@@ -24,7 +25,7 @@ mesh::TriangleMesh drawn(const std::vector<Vec2>& profile) {
 
 FilmMesh film_of(const mesh::TriangleMesh& model) {
     return select_film(
-        model, [](std::uint32_t, const Weights&) { return 1.0; }, 0, kMm);
+        model, [](std::uint32_t, const Weights&) { return 1.0; }, {.bleed = kMm}, kMm);
 }
 
 /// mm² of a stripe 4 mm wide and up to `end` along x, on what lies at z = 0 of two panels with a shut line between
@@ -74,7 +75,7 @@ TEST(Gaps, GroovesAreGapsAndCreasesAreNot) {
 TEST(Gaps, WhatNoFilmSpansIsNone) {
     const mesh::TriangleMesh model = drawn({{0, 0}, {10, 0}, {15, 0}, {20, 0}, {20, 5}, {10, 5}, {0, 5}});
     const auto below = test::coverage_where(model, [](const Vec3& p) { return p.z < 1e-6 && p.x < 12 * kMm; });
-    const std::vector<std::uint8_t> in_gap = find_gaps(model, select_film(model, below, 0, kMm));
+    const std::vector<std::uint8_t> in_gap = find_gaps(model, select_film(model, below, {.bleed = kMm}, kMm));
     ASSERT_FALSE(in_gap.empty());
     EXPECT_EQ(std::accumulate(in_gap.begin(), in_gap.end(), 0), 0);
 }

@@ -69,8 +69,19 @@ TEST(LayFlat, ACapIsStrainedByTheLeastPossibleWithinATenth) {
     }
 }
 
+// A generous limit is no reason to strain the film more than it must be.
+TEST(LayFlat, ACapIsStrainedByTheLeastPossibleUnderAWideLimitToo) {
+    for (const double polar : {0.2, 0.55, 0.8, 1.0}) {
+        const atlas::ChartMesh chart = test::chart_of(test::sphere_cap(0.05, polar, 28));
+        const FlatPanel panel = lay_flat(chart, 0.15);
+        EXPECT_TRUE(panel.sound);
+        EXPECT_LT(panel.strain, 1.1 * least_cap_strain(polar)) << polar;
+    }
+}
+
 // A flat square with one vertex raised: as rigid as possible it is strained by 4 % there. Bringing that to
-// 3 % need not change the size of the rest. The rest is what lies further than a quarter of the side from the vertex.
+// 3 % or less need not change the size of the rest. The rest is what lies further than a quarter of the side from the
+// vertex.
 TEST(LayFlat, OneSharpPlaceLeavesTheRestAtItsTrueSize) {
     const int n = 40;
     const double side = 0.1, height = 0.6 * kMm, limit = 0.03;
@@ -80,7 +91,7 @@ TEST(LayFlat, OneSharpPlaceLeavesTheRestAtItsTrueSize) {
     }));
     const FlatPanel panel = lay_flat(chart, limit);
     ASSERT_TRUE(panel.within(limit)) << panel.strain;
-    EXPECT_GT(panel.strain, 0.025);  // else the test has no sharp place
+    EXPECT_GT(panel.strain, 0.015);  // else the test has no sharp place
     const std::vector<Stretch> stretches = measure_stretch(chart, panel.flat);
     const std::uint32_t top = test::vertex_at(chart, 2 * (n / 2 * n + n / 2), 0);
     const Vec3 raised = chart.position[top];

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "decal/panels/panels.h"
+#include "decal/panels/select_film.h"
 #include "io/model/read_model.h"
 #include "mesh/repair/repair.h"
 #include "paths.h"
@@ -24,7 +25,7 @@ CoverageFn coverage_facing(const mesh::TriangleMesh& model, const Vec3& directio
 }
 
 void expect_within(const mesh::TriangleMesh& model, const CoverageFn& painted, double limit, std::size_t most) {
-    FilmMesh film = select_film(model, painted, 0.005, 5e-4);
+    FilmMesh film = select_film(model, painted, {.bleed = 0.005}, 5e-4);
     ASSERT_FALSE(film.source.empty());
     const std::vector<Panel> panels = cut_into_panels(film, painted, {.max_strain = limit});
     EXPECT_LE(panels.size(), most);

@@ -37,7 +37,7 @@ struct Sheet100 {
     }
 
     std::vector<Outline> outlines_of(const CoverageFn& coverage, OutlineOptions options) const {
-        FilmMesh film = select_film(model, coverage, 8 * kMm, 0.3 * kMm);
+        FilmMesh film = select_film(model, coverage, {.bleed = 8 * kMm}, 0.3 * kMm);
         const std::vector<Panel> panels = cut_into_panels(film, coverage, {});
         options.overlap = [](std::uint32_t) { return 0.0; };
         std::vector<Outline> all;

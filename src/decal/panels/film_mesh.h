@@ -1,16 +1,18 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "mesh/triangle_mesh.h"
 
 /// \file
-/// The part of a model that film shall cover, as a mesh of its own that planes may cut. Made by `select_film`; cut into
-/// panels by panels.h.
+/// The part of a model that film shall cover, as a mesh of its own that planes may cut. Made by select_film.h; cut
+/// into panels by panels.h.
 namespace tuft::decal {
 
 /// Weights of the three corners of a triangle; they add up to one.
@@ -34,13 +36,32 @@ struct Plane {
     double offset = 0;
 };
 
-/// Returns the triangles of `model` with more than half coverage anywhere, and those that the surface reaches from them
-/// within `margin` metres (shortest path over edges, so at most that far on the surface) without turning by more than
-/// 35°. `texel` is the distance of the samples, metres. Each connected part gets a label.
-FilmMesh select_film(const mesh::TriangleMesh& model, const CoverageFn& coverage, double margin, double texel);
+/// Finds `mesh.neighbours`.
+void find_neighbours(FilmMesh& film);
 
-/// Whether more than half coverage lies anywhere in a triangle of the film, sampled every `texel` metres.
-bool is_painted(const FilmMesh& film, std::uint32_t triangle, const CoverageFn& coverage, double texel);
+/// Gives each connected part of the triangles labelled `label` a label of its own, the first one `label`. Returns them.
+std::vector<std::uint32_t> label_parts(FilmMesh& film, std::uint32_t label);
+
+/// Vertices on edges, by `edge_key`.
+using EdgePoints = std::unordered_map<std::uint64_t, std::uint32_t>;
+
+inline std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
+    return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b);
+}
+
+/// Divides the triangles whose edges have points, which `mesh.positions` holds already, so that edges meet in full. The
+/// first part takes a triangle's place, the others are appended.
+void divide(FilmMesh& film, const EdgePoints& points);
+
+/// Parts of an edge: crossings nearer to its lower, or its upper, end move onto that.
+struct Snap {
+    double below = 0, above = 0;
+};
+
+/// Divides the triangles of one label where the linear function with `height` at the vertices is 0. Returns for each
+/// triangle 1 where it has that label and lies above.
+std::vector<std::uint8_t> divide_at_level(FilmMesh& film, std::uint32_t label, std::vector<double> height,
+                                          const Snap& snap);
 
 /// Cuts the triangles of one label along a plane; both sides, connected part by connected part, get new labels, and the
 /// old label is used for the first of them. Triangles of other labels that share a cut edge are divided too, so edges

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "atlas/flatten/flatten.h"
 #include "atlas/flatten/reference.h"
@@ -18,9 +19,12 @@ using atlas::Reference;
 constexpr double kNeedle = 0.01;       // height over the longest edge
 constexpr double kDevelopable = 2e-5;  // strain up to which unrolling is exact enough: 0.002 mm in 100
 constexpr double kAim = 0.96;          // of the limit: strain that the local step clamps to
-constexpr int kMostSteps = 400;
-constexpr int kPatience = 60;  // steps without a gain of 1 %
+constexpr int kMostSteps = 600;
+constexpr int kPatience = 150;  // steps without a gain of 1 %
 constexpr double kMomentum = 0.75;
+constexpr double kNoMatter = 2e-3;  // strain that film does not feel
+constexpr double kFirstCut = 0.15;  // of the strain, that is tried to be spared at once, then half of it ...
+constexpr double kLastCut = 0.015;  // ... down to this
 
 /// A 2 × 2 matrix (a, b; c, d) as a turn and scaling (e, −h; h, e) and a mirror and scaling (f, g; g, −f). Its singular
 /// values are the sum and the difference of both scales.
@@ -136,9 +140,9 @@ class StrainLimiter {
         ok_ = factor_.info() == Eigen::Success && factor_.vectorD().allFinite();
     }
 
-    /// Moves `flat` until no strain exceeds `limit`, or nothing is gained any more.
-    void run(std::vector<Vec2>& flat, double limit) const {
-        if (!ok_ || n_ < 2) return;
+    /// Moves `flat` until no strain exceeds `limit`, or nothing is gained any more. Returns its strain.
+    double run(std::vector<Vec2>& flat, double limit) const {
+        if (!ok_ || n_ < 2) return range_of(references_, chart_, flat).strain();
         const double lo = 1 / (1 + kAim * limit), hi = 1 / (1 - kAim * limit);
         std::vector<Vec2> best = flat, before = flat, at(flat.size());
         double least = range_of(references_, chart_, flat).strain();
@@ -152,6 +156,7 @@ class StrainLimiter {
             if (strain < least) least = strain, best = flat;
         }
         flat = std::move(best);
+        return least;
     }
 
   private:
@@ -188,6 +193,19 @@ class StrainLimiter {
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::AMDOrdering<int>> factor_;
     bool ok_ = false;
 };
+
+/// Lowers the largest strain step by step as far as it goes.
+void lower_strain(const StrainLimiter& limiter, std::vector<Vec2>& flat, double strain) {
+    double part = kFirstCut;
+    while (part > kLastCut && strain > kNoMatter) {
+        std::vector<Vec2> lower = flat;
+        const double reached = limiter.run(lower, (1 - part) * strain);
+        if (reached < (1 - 0.5 * part) * strain)
+            flat = std::move(lower), strain = reached;
+        else
+            part *= 0.5;
+    }
+}
 
 FlatPanel finished(const ChartMesh& chart, const std::vector<Reference>& references, std::vector<Vec2> flat) {
     FlatPanel panel;
@@ -231,26 +249,36 @@ FlatPanel lay_flat(const ChartMesh& chart, double limit, SheetSize size) {
     flat = atlas::flatten(chart, options);
     if (flat.empty()) return {};
     const Stretch range = range_of(references, chart, flat);
-    if (range.strain() <= limit || !std::isfinite(range.most)) return finished(chart, references, std::move(flat));
+    if (!std::isfinite(range.most)) return finished(chart, references, std::move(flat));
+    std::optional<StrainLimiter> limiter;
+    if (size == SheetSize::nearest) limiter.emplace(chart, references);
+    const auto lowered = [&](std::vector<Vec2> from) {
+        if (!limiter) return finished(chart, references, std::move(from));
+        std::vector<Vec2> lower = from;
+        lower_strain(*limiter, lower, range_of(references, chart, from).strain());
+        FlatPanel panel = finished(chart, references, std::move(lower));
+        return panel.sound ? panel : finished(chart, references, std::move(from));
+    };
+    if (range.strain() <= limit) return lowered(std::move(flat));
     // The same strain at both ends: (scale σ_max − 1) = (1 − scale σ_min).
     const double balance = 0.5 * (range.most + range.least);
     std::vector<Vec2> scaled = times(flat, balance);
     FlatPanel panel = finished(chart, references, scaled);
     if (panel.strain > limit && atlas::arap_energy(chart, flat) > most) return panel;
     if (panel.strain > limit) {
-        StrainLimiter(chart, references).run(scaled, limit);
+        if (!limiter) limiter.emplace(chart, references);
+        limiter->run(scaled, limit);
         panel = finished(chart, references, std::move(scaled));
     }
     if (!panel.within(limit) || size == SheetSize::balanced) return panel;
-    const StrainLimiter limiter(chart, references);
     // Where the limit is met at a size nearer to the true one too, most of the film is strained less.
     for (const double part : {0.0, 0.5}) {
         std::vector<Vec2> nearer = times(flat, 1 + part * (balance - 1));
-        limiter.run(nearer, limit);
-        FlatPanel other = finished(chart, references, std::move(nearer));
-        if (other.within(limit)) return other;
+        limiter->run(nearer, limit);
+        if (FlatPanel other = finished(chart, references, std::move(nearer)); other.within(limit))
+            return lowered(std::move(other.flat));
     }
-    return panel;
+    return lowered(std::move(panel.flat));
 }
 
 }  // namespace tuft::decal
