@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "ink/film/tile/fibres.h"
 
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double kGravity = 9.81, kDensity = 1000;   // m/s², kg/m³
 constexpr double kLeastSheetSteepness = 0.1;         // sin α: as for beads
+constexpr double kShortRun = 0.05;                   // seconds: as long as a step with beads
 constexpr double kLookEvery = 0.25;                  // seconds
 constexpr double kMostTexels = 8;                    // that liquid goes in one sweep: less than a tile
 constexpr double kMargin = 4;                        // texels more than the thickest liquid goes in a run
@@ -302,21 +304,26 @@ bool SheetFlow::choose_tiles(TileList& tiles, double seconds) {
     }
     const double texels = rate() * most * most * seconds / map.texel_size;
     const auto n = static_cast<std::int64_t>(map.tiles_per_side);
-    for (double reached = 0; !slots.empty() && reached <= texels + kMargin; reached += kSide) {
-        const std::size_t inner = slots.size();
-        for (std::size_t i = 0; i < inner; ++i) {
-            const std::int64_t at = map.tile_of_slot[slots[i]], x = at % n, y = at / n;
+    marked_.resize(map.n_slots(), 0);
+    for (const std::uint32_t slot : slots) marked_[slot] = 1;
+    const auto add = [&](std::uint32_t slot) {
+        if (slot != kNone && !std::exchange(marked_[slot], std::uint8_t{1})) slots.push_back(slot);
+    };
+    std::size_t from = 0;
+    for (double reached = 0; from < slots.size() && reached <= texels + kMargin; reached += kSide) {
+        const std::size_t to = slots.size();
+        for (; from < to; ++from) {
+            const std::int64_t at = map.tile_of_slot[slots[from]], x = at % n, y = at / n;
             for (std::int64_t row = std::max<std::int64_t>(y - 1, 0); row < std::min(y + 2, n); ++row)
                 for (std::int64_t column = std::max<std::int64_t>(x - 1, 0); column < std::min(x + 2, n); ++column)
-                    if (const std::uint32_t slot = map.slot_of_tile[static_cast<std::size_t>(row * n + column)];
-                        slot != kNone)
-                        slots.push_back(slot);
-            for (std::uint32_t l = tiles.seams.start[slots[i]]; l < tiles.seams.start[slots[i] + 1]; ++l)
-                slots.push_back(tiles.seams.links[l].other_slot);
+                    add(map.slot_of_tile[static_cast<std::size_t>(row * n + column)]);
+            const std::uint32_t slot = slots[from];
+            for (std::uint32_t l = tiles.seams.start[slot]; l < tiles.seams.start[slot + 1]; ++l)
+                add(tiles.seams.links[l].other_slot);
         }
-        std::sort(slots.begin(), slots.end());
-        slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
     }
+    for (const std::uint32_t slot : slots) marked_[slot] = 0;
+    std::sort(slots.begin(), slots.end());
     const bool enough = std::includes(slots_.begin(), slots_.end(), slots.begin(), slots.end());
     if (enough && slots_.size() <= kMostSpare * slots.size()) return false;
     slots_ = std::move(slots);
@@ -541,8 +548,9 @@ std::vector<std::uint32_t> SheetFlow::run(Canvas& canvas, TileList& tiles, doubl
     waited_ += seconds;
     if (!ran_ && waited_ < kLookEvery * (1 - 1e-9)) return {};
     if (near_seam_.empty()) mark_seams(tiles);
-    if (choose_tiles(tiles, waited_)) make_nodes(tiles);
-    seconds = ran_ ? waited_ : seconds;  // where none ran, none moves in what has passed
+    // Where none ran the last time, none moved in what has passed, and steps may have been long.
+    seconds = std::min(seconds, ran_ ? kLookEvery : kShortRun);
+    if (choose_tiles(tiles, seconds)) make_nodes(tiles);
     waited_ = 0;
     ran_ = false;
     if (slots_.empty()) return {};

@@ -95,6 +95,7 @@ class SheetFlow {
     std::vector<std::uint8_t> runs_;             ///< [id] 1: in the last `run`
     std::vector<std::uint8_t> changed_;          ///< of `slots_`: 1 where liquid went
     std::vector<std::uint8_t> steep_;            ///< [n_slots] 0: not looked up, 1: level, 2: steep
+    std::vector<std::uint8_t> marked_;           ///< [n_slots] scratch
     std::uint64_t faces_version_ = 0;
     double waited_ = 0;  ///< s since sheets were looked for
     bool ran_ = true, fast_ = false;
