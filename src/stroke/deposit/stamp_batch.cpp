@@ -129,7 +129,7 @@ double StampBatch::flush(const ProgressFn& going_on) {
         if (!erase_starts_.contains(slot)) erase_starts_.emplace(slot, ink::erase_start(target_.canvas(), slot));
     }
     if (std::any_of(batch_.begin(), batch_.end(), [](const Stamp& s) { return s.by_hair || s.grain_share > 0; }))
-        target_.prepare_grain();
+        for (std::size_t t = 0; t < n_tiles; ++t) target_.prepare_grain(order_[first_[t]].slot);
     std::array<ink::DepositLaw, kStamps> laws;
     for (std::size_t i = 0; i < batch_.size(); ++i) laws[i] = ink::deposit_law(batch_[i].ink, batch_[i].ds);
 

@@ -57,7 +57,8 @@ ink::NodeAreas StampExposure::expose(const Stamp& stamp) {
     tiles_.resize(plan_.tiles.size());
     if (plan_.empty()) return {};
     piecewise_ = footprint::choose_mode(plan_, piecewise_, options_);
-    if (stamp.by_hair) target_.prepare_grain();
+    for (const footprint::TileJob& job : plan_.tiles)
+        if (stamp.by_hair) target_.prepare_grain(job.slot);
     parallel_for(tiles_.size(), 4, [&](std::size_t begin, std::size_t end) {
         Scratch scratch;
         for (std::size_t i = begin; i < end; ++i) expose_tile(tiles_[i], stamp, plan_.tiles[i], scratch);

@@ -12,18 +12,15 @@ StampTarget::StampTarget(const Model& model, ink::Canvas& canvas, const ink::Sub
                          const TargetLimits& limits, PlanScratchPool& scratch)
     : model_(model), canvas_(canvas), substrate_(substrate), limits_(limits), scratch_(scratch) {}
 
-void StampTarget::prepare_grain() {
-    if (grain_.empty()) grain_.resize(model_.texels.n_slots());
-}
-
 const StampTarget::Grain& StampTarget::grain(std::uint32_t slot) {
-    if (!grain_[slot]) {
-        grain_[slot] = std::make_unique<Grain>();
+    std::unique_ptr<Grain>& found = grain_.at(slot);
+    if (!found) {
+        found = std::make_unique<Grain>();
         atlas::TexelShape buffer;
         ink::relief_of_tile(atlas::shape_of(model_.texels, slot, buffer),
-                            static_cast<double>(substrate(slot).relief_length), *grain_[slot]);
+                            static_cast<double>(substrate(slot).relief_length), *found);
     }
-    return *grain_[slot];
+    return *found;
 }
 
 void StampTarget::expose_grain(std::uint32_t slot, std::array<float, atlas::kTileTexels>& exposure, double film) {

@@ -65,8 +65,8 @@ class StampTarget {
     /// Sets the part of the path that is painted now, for the plan.
     void set_part(std::uint32_t part) { part_ = part; }
 
-    /// Must be called once, by one thread, before `expose_grain` and `apply_grain`.
-    void prepare_grain();
+    /// Must be called by one thread before `expose_grain` and `apply_grain` of that tile.
+    void prepare_grain(std::uint32_t slot) { grain_.try_emplace(slot); }
     /// Reduces a tile's exposure to the part of the grain that hair with `film` metres of ink under it reaches. One
     /// thread per tile.
     void expose_grain(std::uint32_t slot, std::array<float, atlas::kTileTexels>& exposure, double film);
@@ -98,7 +98,7 @@ class StampTarget {
     TargetLimits limits_;
     std::uint32_t part_ = 0;
     PlanScratchPool& scratch_;
-    std::vector<std::unique_ptr<Grain>> grain_;  ///< by slot, evaluated at first use by dry hair
+    std::unordered_map<std::uint32_t, std::unique_ptr<Grain>> grain_;  ///< by slot, evaluated at first use by dry hair
     std::unordered_map<std::uint32_t, ink::TileSnapshot> before_;
     bool on_relief_ = false;
 };
