@@ -21,10 +21,10 @@ constexpr double kAlongRow = 0.2, kAcrossRow = 0.5;
 // Part of a strip's broad axis that lies on the surface, and sine of the angle between it and its hair, from which on
 // its ends follow its neighbours'.
 constexpr double kLies = 0.6, kLiesFlat = 0.8, kAcrossHair = 0.5, kSquare = 0.8;
-constexpr double kMostAslant = 2;  // times its half width, that a strip's edge lies from its broad axis
-constexpr double kOblique = 0.8, kSquareTo = 0.97;  // likewise, from which on hair of a toe stands ahead
-constexpr double kFarAhead = 3;                     // likewise, that hair of a toe stands ahead at most
-constexpr double kStraight = 0.01;                  // of its half width
+constexpr double kMostAslant = 2;                // times its half width, that a strip's edge lies from its broad axis
+constexpr double kOblique = 0.5, kSquareTo = 1;  // likewise, from which on hair of a toe stands ahead
+constexpr double kFarAhead = 2.5;                // likewise, that hair of a toe stands ahead at most
+constexpr double kStraight = 0.01;               // of its half width
 constexpr double kTurning = 0.15;  // cosine from a broad axis to its row below which it is between both directions
 
 /// Broad half of a section on one side of its spine, metres, (u, v, height): `to` by `part` in place of its own.

@@ -567,7 +567,7 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
         const double roll = options.turned ? turned + angle_of(towards) : s.roll;
         before = p;
         lead[i] = tip_lag_at(options, s.pressure, s.tilt, roll, towards);
-        broad[i] = smooth_step((std::abs(std::sin(turned)) - kEdgeOn) / (kBroadOn - kEdgeOn));
+        broad[i] = smooth_step((std::abs(std::sin(s.roll - angle_of(towards))) - kEdgeOn) / (kBroadOn - kEdgeOn));
     }
     if (options.toe > 0 && options.turned && !dot) lead_to_the_end(trace, options, turning, broad, lead);
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
