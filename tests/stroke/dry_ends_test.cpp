@@ -95,17 +95,20 @@ TEST(DryBrush, AFilbertsStrokeEndsInOneEdge) {
     Document painting(model);
     painting.paint(s);
     const auto rows = inked(painting);
-    std::size_t first = rows.size(), last = 0;  // places where rows end, of the middle 8 mm
-    const std::size_t middle = rows.size() / 2, half = static_cast<std::size_t>(4e-3 / kSide * kSize);
+    constexpr double kTexel = kSide / kSize;
+    std::vector<double> ends;  // of the rows of the middle 6 mm, metres
+    const std::size_t middle = rows.size() / 2, half = static_cast<std::size_t>(3e-3 / kTexel);
     for (std::size_t y = middle - half; y <= middle + half; ++y) {
         std::size_t end = 0;
         for (std::size_t x = 0; x < rows[y].size(); ++x)
             if (rows[y][x]) end = x;
-        first = std::min(first, end);
-        last = std::max(last, end);
+        ends.push_back(kTexel * static_cast<double>(end));
     }
     // Hair by hair, two rows lie 0.35 mm apart. Ends of hair differ by 0.1 mm, and a texel is 0.06 mm.
-    EXPECT_LT(static_cast<double>(last - first) * kSide / kSize, 0.25e-3);
+    for (std::size_t i = 1; i < ends.size(); ++i) EXPECT_LT(std::abs(ends[i] - ends[i - 1]), 0.25e-3) << i;
+    // As round as its toe: a circle of 6 mm falls by 0.8 mm.
+    const auto [first, last] = std::minmax_element(ends.begin(), ends.end());
+    EXPECT_LT(*last - *first, 0.8e-3 + 0.25e-3);
 }
 
 /// Metres of the longest stretch of x between the stroke's ends in which there is no ink at any y.
