@@ -352,16 +352,28 @@ TEST_F(Panels, PartsAreHiddenLockedAndMadeOfGlass) {
     }
 }
 
-// A CAD file states its unit, which its reader converts: there is none to choose, and none to name wrongly.
-TEST_F(Panels, ACadFileIsOpenedByItsChordAndWithoutAUnitToChoose) {
-    const Ran ran = studio("open " + source_folder() +
-                               "/tests/fuzz/corpus/stp/box.stp\nwait-ready\nexpect label \"CAD groups\"\nnames\n"
-                               "click \"Chord tolerance\"\nwait 0.2\nclick \"0.5 mm\"\nwait-ready\nset texels 256\n"
-                               "click \"Unwrap and paint\"\nwait-ready\nexpect model\n",
-                           "--headless --size 1280x720");
-    ASSERT_EQ(ran.status, 0) << ran.err;
-    EXPECT_EQ(ran.out.find("Unit\n"), std::string::npos) << ran.out;
-    EXPECT_EQ(ran.out.find("\nUp\n"), std::string::npos) << ran.out;
+// A CAD file states its unit. Another one may be said, and stays said where the file is read anew by another chord; one
+// that agrees with the file is none.
+TEST_F(Panels, ACadFileIsOpenedByItsChordAndInAUnitThatIsSaid) {
+    const auto opened = [&](const std::string& unit) {
+        const Ran ran =
+            studio("open " + source_folder() +
+                       "/tests/fuzz/corpus/stp/box.stp\nwait-ready\nexpect label \"CAD groups\"\nnames\n"
+                       "click \"Unit\"\nwait 0.2\nclick \"" +
+                       unit + "\"\nwait 0.2\nclick \"Chord tolerance\"\nwait 0.2\nclick \"0.5 mm\"\nwait-ready\n" +
+                       "set texels 256\nclick \"Unwrap and paint\"\nwait-ready\nexpect model\nsave " +
+                       path(unit + ".tuft") + "\nwait-ready\n",
+                   "--headless --size 1280x720");
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        EXPECT_EQ(ran.out.find("\nUp\n"), std::string::npos) << "its axes are those of the model: " << ran.out;
+        return io::Project::open(path(unit + ".tuft")).model();
+    };
+    const io::ProjectModel inches = opened("in"), millimetres = opened("mm");
+    EXPECT_TRUE(inches.frame.unit_overrides);
+    EXPECT_EQ(inches.frame.unit, "in");
+    EXPECT_NEAR(inches.mesh.bounds.size().x, 30 * 0.0254, 1e-6);
+    EXPECT_FALSE(millimetres.frame.unit_overrides);
+    EXPECT_NEAR(millimetres.mesh.bounds.size().x, 0.03, 1e-8);
 }
 
 }  // namespace

@@ -181,6 +181,15 @@ TEST_F(Cad, AChordIsOfTheModelInTheUnitThatIsSaid) {
               read_model(small, {.chord = 1e-4}).n_polygons());
 }
 
+// Numbers of millimetres that the file states as metres: 50 m across, where a tenth of a millimetre is too fine.
+TEST_F(Cad, AChordThatIsTooFineForTheStatedUnitIsNotForTheOneThatIsSaid) {
+    const fs::path wrong = step(BRepPrimAPI_MakeCylinder(5e4, 8e4).Shape(), "wrong.step", "M");
+    const fs::path right = step(BRepPrimAPI_MakeCylinder(50, 80).Shape(), "right.step");
+    ASSERT_NEAR(read_model(wrong).stated_unit, 1, 1e-9);
+    EXPECT_EQ(read_model(wrong, {.chord = 1e-4, .unit = "mm"}).n_polygons(),
+              read_model(right, {.chord = 1e-4}).n_polygons());
+}
+
 // n chords of a circle of radius r miss its length by (π/n)²/6, and its arc by c = r (π/n)²/2: the area of the side is
 // short by c / 3r.
 TEST_F(Cad, ACylindersAreaConvergesWithTheFirstOrderOfTheChord) {

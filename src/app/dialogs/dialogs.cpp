@@ -100,7 +100,7 @@ void unit_row(Ui& ui, const Inspected& in, FileFrame& frame) {
     }
     std::string unit = frame.unit_overrides ? frame.unit : stated.front();
     if (ui.combo("Unit", unit, stated, 90)) {
-        frame.unit_overrides = unit != stated.front();
+        frame.unit_overrides = io::overrides_unit(in.soup, unit);
         frame.unit = frame.unit_overrides ? unit : "m";
     }
     note_beside(ui.tr(frame.unit_overrides ? "in place of what the file states" : "stated in the file"));

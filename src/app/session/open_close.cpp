@@ -80,7 +80,7 @@ void take_inspected(ProjectState& project, Inspected inspected, const PaintThrea
     // A revised file has the unit of the one before, where that stated none or a wrong one.
     const bool keeps = revises && work && (work->frame().unit_overrides || !io::states_unit(work->source()));
     if (!keeps) frame.unit = m.unit.unit;
-    frame.unit_overrides = keeps && inspected.unit_stated() && work->frame().unit_overrides;
+    frame.unit_overrides = keeps && work->frame().unit_overrides && io::overrides_unit(inspected.soup, frame.unit);
     if (inspected.unit_stated() && !frame.unit_overrides) frame.unit = "m";
     if (!revises) {
         const double factor = inspected.metres_per_unit(frame) / m.metres_per_unit;

@@ -78,10 +78,10 @@ std::optional<Format> by_content(std::string_view bytes) {
 /// A chord tolerance is in metres of the model, the reader's in those that the file states, which is known then.
 mesh::PolygonSoup read_cad_in(CadFormat format, const std::vector<char>& bytes, const std::filesystem::path& path,
                               const CadReading& how) {
-    mesh::PolygonSoup soup = read_cad(format, bytes, path, how);
-    if (how.chord <= 0 || !overrides_unit(soup, how.unit)) return soup;
+    if (how.chord <= 0 || how.unit.empty()) return read_cad(format, bytes, path, how);
     CadReading scaled = how;
-    scaled.chord /= *metres_per_unit(soup, how.unit);
+    scaled.chord = 0;  // the tolerance may be none at all in the other unit
+    scaled.chord = how.chord / *metres_per_unit(read_cad(format, bytes, path, scaled), how.unit);
     return read_cad(format, bytes, path, scaled);
 }
 
