@@ -129,5 +129,23 @@ TEST_F(BandsInTheWindow, AreLaidAlongTheEdgeBesideTheCursorAndTakenBackAsOne) {
     EXPECT_TRUE(places(ran.out).contains("group tile.svg")) << ran.out;
 }
 
+// A pane of 30 mm over the middle of a body of 60 mm: its edges are too far from those of the body.
+TEST_F(BandsInTheWindow, FollowTheEdgesOfPartsThatAreShownAgain) {
+    std::ofstream(path("tile.svg")) << "<svg xmlns='http://www.w3.org/2000/svg' width='10mm' viewBox='0 0 10 4'><path "
+                                       "d='M1 2 H9' stroke='black' fill='none'/></svg>";
+    std::ofstream(path("m.obj")) << "o body\nv -30 -30 0\nv 30 -30 0\nv 30 30 0\nv -30 30 0\nf 1 2 3 4\n"
+                                    "o pane\nv -15 -15 4\nv 15 -15 4\nv 15 15 4\nv -15 15 4\nf 5 6 7 8\n";
+    const std::string beside = "move 58%,50%\nwait 0.2\npress\nrelease\nwait-ready\n",
+                      eye = "click \"show part pane\"\nwait-ready\nwait 0.2\n";
+    const Ran ran =
+        studio("open " + path("m.obj") +
+                   "\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\nwait-ready\nset azimuth 0\nset elevation "
+                   "85\nclick \"fold Parts\"\nwait 0.2\n" +
+                   eye + "open " + path("tile.svg") + "\nwait-ready\nset writing-along edge\nset writing-width 10\n" +
+                   beside + "expect message \"no edge and no crease\"\n" + eye + beside + "expect message --along\n",
+               "--headless --size 1280x900");
+    EXPECT_EQ(ran.status, 0) << ran.err;
+}
+
 }  // namespace
 }  // namespace tuft::app

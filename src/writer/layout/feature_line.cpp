@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -32,25 +33,47 @@ struct Edge {
     double angle;  ///< radians between the triangles
 };
 
-static std::vector<Edge> feature_edges(const mesh::TriangleMesh& mesh) {
+/// Which groups of its mesh a query has: parts of a model are hidden as wholes. Empty: all.
+static std::vector<char> groups_of(const mesh::SurfaceQuery& query) {
+    constexpr double kThere = 1e-6;  // of the diagonal
+    const mesh::TriangleMesh& mesh = query.mesh();
+    std::vector<char> known, there;
+    for (std::uint32_t i = 0; i < mesh.triangle_groups.size(); ++i) {
+        const std::size_t group = mesh.triangle_groups[i];
+        if (group >= there.size()) there.resize(group + 1), known.resize(group + 1);
+        if (std::exchange(known[group], 1)) continue;
+        Vec3 middle(0);
+        for (const std::uint32_t v : mesh.triangles[i]) middle += Vec3(mesh.positions[v]) / 3.0;
+        there[group] = query.closest_point(middle, kThere * mesh.bounds.diagonal()).has_value();
+    }
+    return there;
+}
+
+static std::vector<Edge> feature_edges(const mesh::SurfaceQuery& query) {
+    const mesh::TriangleMesh& mesh = query.mesh();
+    const std::vector<char> groups = groups_of(query);
+    const auto is_there = [&](std::uint32_t i) { return groups.empty() || groups[mesh.triangle_groups[i]]; };
     std::vector<Edge> edges;
-    for (std::uint32_t i = 0; i < mesh.n_triangles(); ++i)
+    for (std::uint32_t i = 0; i < mesh.n_triangles(); ++i) {
+        if (!is_there(i)) continue;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t other = mesh.neighbours[3 * std::size_t{i} + k];
             const std::array ends{mesh.triangles[i][k], mesh.triangles[i][(k + 1) % 3]};
-            if (other == kNone) {
+            if (other == kNone || !is_there(other)) {
                 edges.push_back({ends, {i, kNone}, LineKind::border, 0});
                 continue;
             }
             if (other < i) continue;
             const Vec3 n = mesh::face_normal(mesh, i), m = mesh::face_normal(mesh, other);
             const double angle = std::atan2(glm::length(glm::cross(n, m)), glm::dot(n, m));
-            const bool groups = !mesh.triangle_groups.empty() && mesh.triangle_groups[i] != mesh.triangle_groups[other];
+            const bool between =
+                !mesh.triangle_groups.empty() && mesh.triangle_groups[i] != mesh.triangle_groups[other];
             if (angle > kSharpEdge)
                 edges.push_back({ends, {i, other}, LineKind::sharp_edge, angle});
-            else if (groups)
+            else if (between)
                 edges.push_back({ends, {i, other}, LineKind::group_border, angle});
         }
+    }
     return edges;
 }
 
@@ -206,7 +229,7 @@ class FeatureLines::Edges : public edges::Walk {
 };
 
 FeatureLines::FeatureLines(const mesh::SurfaceQuery& query)
-    : query_(query), edges_(std::make_unique<Edges>(query.mesh(), edges::feature_edges(query.mesh()))) {}
+    : query_(query), edges_(std::make_unique<Edges>(query.mesh(), edges::feature_edges(query))) {}
 
 FeatureLines::~FeatureLines() = default;
 

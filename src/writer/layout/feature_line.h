@@ -41,7 +41,8 @@ struct FeatureLine {
 /// Throws `Error` where no line is within reach. Cost: one pass over the triangles.
 FeatureLine feature_line(const mesh::SurfaceQuery& query, const Vec3& through, double reach);
 
-/// The same for one place after the other: the edges of the model are found once.
+/// The same for one place after the other: the edges of the model are found once. Parts that the query leaves out have
+/// none; their neighbours end in a border there.
 class FeatureLines {
   public:
     explicit FeatureLines(const mesh::SurfaceQuery& query);
