@@ -65,6 +65,22 @@ TEST(CrampedPointer, WhereItHasRoomItStandsUpright) {
         EXPECT_GT((pose.rotation * Vec3(0, 0, 1)).z, std::cos(kTipped));
 }
 
+// A block 10 mm high, lower than the tuft is long: lines at the holder's side begin within it and leave through its
+// top.
+TEST(CrampedPointer, BesideAStepItStandsUpright) {
+    const std::string obj =
+        "v -200 -200 0\nv 200 -200 0\nv 200 200 0\nv -200 200 0\nf 1 2 3 4\n"
+        "v -200 0 -1\nv 200 0 -1\nv 200 100 -1\nv -200 100 -1\nv -200 0 10\nv 200 0 10\nv 200 100 10\n"
+        "v -200 100 10\nf 8 7 6 5\nf 9 10 11 12\nf 5 6 10 9\nf 6 7 11 10\nf 7 8 12 11\nf 8 5 9 12\n";
+    const mesh::TriangleMesh mesh =
+        mesh::build_surface(mesh::read_obj({obj.begin(), obj.end()}, "step.obj"), {.metres_per_unit = 1e-3}).mesh;
+    const mesh::SurfaceQuery query(mesh);
+    constexpr double kTipped = 0.13;  // radians that a clean stroke tips the holder ahead at first
+    const std::vector<brush::Pose> poses = stroke_at(query, brush::load_preset("wolf-medium"), -0.002);
+    ASSERT_GT(poses.size(), 50u);
+    for (const brush::Pose& pose : poses) EXPECT_GT((pose.rotation * Vec3(0, 0, 1)).z, std::cos(kTipped)) << pose.time;
+}
+
 // Where a whole car is in view, 200 pixels a second are metres a second on it: no fast hand.
 TEST(PointerSpeed, AHandIsAsFastAsItsCursorIsOnTheScreen) {
     PointerSettings s;

@@ -76,9 +76,14 @@ PointerInput::PointerInput(const mesh::SurfaceQuery& surface, const brush::Prese
 bool PointerInput::has_room(const Vec3& at, const Vec3& along) const {
     constexpr double kNear = 0.15;  // of the tuft's length
     const double length = holder_.tuft_length + holder_.hover, near = kNear * length;
+    const Vec3 foot = at + near * along;
+    if (surface_.ray(foot, along, 0, length - near)) return false;
     const Frame f = make_frame(at, along);
-    for (const Vec3& side : {Vec3(0), f.t, -f.t, f.b, -f.b})
-        if (surface_.ray(at + radius_ * side, along, near, length)) return false;
+    for (const Vec3& side : {f.t, -f.t, f.b, -f.b}) {
+        // Behind a wall beside the place, such as within a step, a line would leave through its top.
+        if (surface_.ray(foot, side, 0, radius_)) continue;
+        if (surface_.ray(foot + radius_ * side, along, 0, length - near)) return false;
+    }
     return true;
 }
 
@@ -88,8 +93,10 @@ std::optional<AimedSurface> PointerInput::find_surface(const Aim& aim) const {
     if (!found || has_room(found->position, found->normal)) return found;
     const Vec3 normal = found->normal, eye = -aim.ray.direction;
     for (int i = 1; i <= kLeans; ++i) {
-        found->normal = glm::normalize(glm::mix(normal, eye, static_cast<double>(i) / kLeans));
-        if (has_room(found->position, found->normal)) break;
+        const Vec3 leant = glm::normalize(glm::mix(normal, eye, static_cast<double>(i) / kLeans));
+        if (!has_room(found->position, leant)) continue;
+        found->normal = leant;
+        break;
     }
     return found;
 }

@@ -55,7 +55,8 @@ struct StrokeStep {
 /// does not lead its ink, lifts the hair as it comes back over half of its tip lag, and sets it down over its end.
 ///
 /// Where a wall is over the place, nearer than the tuft is long, such as a wheel arch over its tyre, the holder leans
-/// from the surface's normal towards the eye until it has room: what is seen can be reached from there.
+/// from the surface's normal towards the eye until it has room: what is seen can be reached from there. Where it finds
+/// none, and beside a wall, it stands along the normal.
 ///
 /// A holder that neither a pen nor the settings lean, leans as its make is held (`lean_of_make`).
 class PointerInput {
