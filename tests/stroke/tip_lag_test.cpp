@@ -223,6 +223,21 @@ TEST(TipLag, APetalOfAFlatNarrowsSteadily) {
     }
 }
 
+// Hair lies only where it came to: a flat on its edge that trembles keeps the tip lag of its edge.
+TEST(TipLag, AFlatThatTremblesOnItsEdgeStaysOnIt) {
+    constexpr double kTremble = 1 * kDegree;
+    FollowedTurn edge(26e-3, 0);
+    for (int i = 1; i <= 200; ++i) {
+        const double turn = kTremble * std::sin(0.3 * i);
+        EXPECT_LE(std::abs(std::sin(edge.follow(turn, 1e-3))), std::sin(kTremble) + 1e-12) << i;
+    }
+    // From its broad side it comes back lying, until it is lifted.
+    FollowedTurn broad(26e-3, 0.5 * std::numbers::pi);
+    for (int i = 1; i <= 200; ++i) EXPECT_NEAR(std::abs(std::sin(broad.follow(0, 1e-3))), 1, 1e-12) << i;
+    broad.lift();
+    EXPECT_NEAR(std::sin(broad.follow(0, 1)), 0, 1e-9);
+}
+
 // The hand went back while it lifted, and the hair sprang forward: a step, and a rectangle of three quarters of the
 // width as the end. Lifted while the hand goes on, a toe as wide as 12 mm ends in about a half circle.
 TEST(TipLag, AStrokeOfAFilbertEndsRound) {

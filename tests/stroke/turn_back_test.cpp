@@ -104,7 +104,7 @@ TEST(TurnBack, AlongAStencilTheHandKeepsItsPressure) {
 
 // A flat that keeps its roll draws a round as a broad nib does: broad, thin, broad. On its edge the hand went back by
 // 1.6 mm, to the lag of hair that is set down there, and the hair that still lay was pushed: steps and a hook.
-TEST(TurnBack, ThePartOfARoundOnItsEdgeIsNone) {
+TEST(TurnBack, ARoundAtOneRollNeverTakesTheHandBack) {
     constexpr double kTurn = 4.2, kLands = 8e-3;
     static WidthTables tables;
     for (const char* brush : {"flat-12", "filbert-12"})

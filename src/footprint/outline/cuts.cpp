@@ -277,9 +277,9 @@ struct TouchingPart {
     double over_half = 1, side = 0;
 };
 
-// Sine of the angle between a strip and its hair up to which and from which on that of a toe stands ahead.
-constexpr double kOblique = 0.8, kSquareTo = 0.97;
-constexpr double kFarAhead = 8;  // half widths of a strip, by which hair of a toe stands ahead at most
+// Between two spines, both of which are solved, hair of a toe stands ahead from a sine of its strip to its hair on, and
+// wholly from another; by so many half widths of a strip at most.
+constexpr double kGapAslant = 0.8, kGapAbreast = 0.97, kGapAhead = 8;
 
 /// Direction of a section's hair on the surface, unit; zero where it stands.
 Vec2 hair_on_surface(const Cut& cut) {
@@ -366,12 +366,12 @@ class RowLanding {
             if (!(half > 1e-9)) continue;
             const double across = std::abs(flat.x * hair.y - flat.y * hair.x) / size;
             const double lies = smooth_step((size / glm::length(broad) - kStandsAside) / (kLiesBeside - kStandsAside)) *
-                                smooth_step((across - kOblique) / (kSquareTo - kOblique));
+                                smooth_step((across - kGapAslant) / (kGapAbreast - kGapAslant));
             const bool hi = glm::dot(other.foot - own.foot, flat) > 0;
             const double over_half = std::abs(glm::dot(end - cut.centre, flat)) / (size * half);
             (hi ? cut.reach.y : cut.reach.x) = std::lerp(1.0, std::min(over_half, kFarthest), lies);
             const double ahead = glm::dot(end - cut.centre, hair);
-            (hi ? cut.ahead_hi : cut.ahead_lo) = lies * std::clamp(ahead, -kFarAhead * half, kFarAhead * half) * hair;
+            (hi ? cut.ahead_hi : cut.ahead_lo) = lies * std::clamp(ahead, -kGapAhead * half, kGapAhead * half) * hair;
         }
     }
 

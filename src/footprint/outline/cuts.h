@@ -55,8 +55,8 @@ struct Cut {
         const double part = end > 1e-9 ? std::min(std::abs(x) / end, 1.0) : 0;
         return part * part * (x < 0 ? ahead_lo : ahead_hi);
     }
-    bool stands_ahead() const { return ahead_lo != Vec2{0} || ahead_hi != Vec2{0}; }
-    bool is_bent() const { return slant != Vec2{0} || bow != Vec2{0} || drop != Vec2{0} || stands_ahead(); }
+    bool has_ahead() const { return ahead_lo != Vec2{0} || ahead_hi != Vec2{0}; }
+    bool is_bent() const { return slant != Vec2{0} || bow != Vec2{0} || drop != Vec2{0} || has_ahead(); }
     /// Part of the drop at s, counted towards the free edge.
     static double drop_part(double s) {
         const double from_inner = 0.5 * (1 + s);

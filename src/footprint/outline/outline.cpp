@@ -118,7 +118,7 @@ void add_strip_shadow(const Cut& cut, std::span<const Vec2> strip, std::span<con
     double reach = 0;
     for (const Vec2& c : strip) reach = std::max(reach, -(c.x * broad.z + c.y * thick.z));
     const double half = cut.half_height(), z = half > 0 ? cut.z * reach / half : cut.z;
-    const bool bent = cut.is_bent(), drops = cut.drop != Vec2{0}, ahead = cut.stands_ahead();
+    const bool bent = cut.is_bent(), drops = cut.drop != Vec2{0}, ahead = cut.has_ahead();
     const Vec2 across(broad), through(thick), centre = cut.centre, slant = cut.slant, bow = cut.bow;
     const auto height = [&](const StripPlace& p) { return z + p.at.x * broad.z + p.at.y * thick.z; };
     const auto point = [&](const StripPlace& p) {

@@ -21,11 +21,12 @@ constexpr double kAlongRow = 0.2, kAcrossRow = 0.5;
 // Part of a strip's broad axis that lies on the surface, and sine of the angle between it and its hair, from which on
 // its ends follow its neighbours'.
 constexpr double kLies = 0.6, kLiesFlat = 0.8, kAcrossHair = 0.5, kSquare = 0.8;
-constexpr double kMostAslant = 2;                // times its half width, that a strip's edge lies from its broad axis
-constexpr double kOblique = 0.5, kSquareTo = 1;  // likewise, from which on hair of a toe stands ahead
-constexpr double kFarAhead = 2.5;                // likewise, that hair of a toe stands ahead at most
-constexpr double kStraight = 0.01;               // of its half width
-constexpr double kTurning = 0.15;  // cosine from a broad axis to its row below which it is between both directions
+constexpr double kMostAslant = 2;  // times its half width, that a strip's edge lies from its broad axis
+// The same of a free edge, beyond the last spine, from which its place is taken: further ahead it leaves a corner where
+// a row rolls.
+constexpr double kEdgeAslant = 0.5, kEdgeAbreast = 1, kEdgeAhead = 2.5;
+constexpr double kStraight = 0.01;  // of its half width
+constexpr double kTurning = 0.15;   // cosine from a broad axis to its row below which it is between both directions
 
 /// Broad half of a section on one side of its spine, metres, (u, v, height): `to` by `part` in place of its own.
 struct Half {
@@ -212,9 +213,9 @@ void stand_ahead(Cut& cut, const Trail& trail, const Halves& halves, const Vec2&
     if (!(half > 1e-9)) return;
     const double across = std::abs(broad.x * hair.y - broad.y * hair.x) / size;
     const double part = smooth_step((size / glm::length(cut.broad()) - kLies) / (kLiesFlat - kLies)) *
-                        smooth_step((across - kOblique) / (kSquareTo - kOblique));
+                        smooth_step((across - kEdgeAslant) / (kEdgeAbreast - kEdgeAslant));
     const double unbent = 1 - std::sqrt(std::max(0.0, 1 - trail.edge_short / trail.pressed));
-    const double ahead = part * unbent * glm::dot(trail.foot - cut.centre, hair), most = kFarAhead * half;
+    const double ahead = part * unbent * glm::dot(trail.foot - cut.centre, hair), most = kEdgeAhead * half;
     const bool with_row = way_along(halves.row, cut.broad(), 1) >= 0, free_with_row = !halves.to_next;
     (free_with_row == with_row ? cut.ahead_hi : cut.ahead_lo) = std::clamp(ahead, -most, most) * hair;
     cut.drop *= 1 - part;

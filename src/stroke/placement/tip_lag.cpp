@@ -21,7 +21,8 @@ namespace {
 constexpr double kLeansNot = 0.05, kLeans = 0.15;  // radians
 constexpr double kOnGrid = 1e-9;                   // of a cell
 constexpr double kFallsOver = 0.5;  // of the tuft's length, of travel in which hair follows a turn of a wide ferrule
-constexpr double kPlumb = 0.3;      // of the tuft's length, of travel over which an upright holder comes to its lean
+constexpr double kFallen = 0.25 * std::numbers::pi;  // of a turn from the edge, from which on hair lies
+constexpr double kPlumb = 0.3;  // of the tuft's length, of travel over which an upright holder comes to its lean
 
 /// Of the working depth, at which the tip lag as held is measured.
 constexpr std::array kHeldDepths{0.05, 0.15, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0};
@@ -183,23 +184,24 @@ DiskCache shared_tip_lag_cache() {
 }
 
 FollowedTurn::FollowedTurn(double tuft_length, double turn) : lambda_(kFallsOver * tuft_length), turn_(turn) {
-    lay();
+    fall_over();
 }
 
-void FollowedTurn::lay() {
-    laid_ = std::max(laid_, std::abs(std::remainder(turn_, std::numbers::pi)));
+void FollowedTurn::fall_over() {
+    const double from_edge = std::abs(std::remainder(turn_, std::numbers::pi));
+    if (from_edge >= kFallen) broadest_ = std::max(broadest_, from_edge);
 }
 
 double FollowedTurn::turn() const {
     const double from_edge = std::remainder(turn_, std::numbers::pi), broad = 0.5 * std::numbers::pi;
-    if (std::abs(from_edge) >= laid_) return turn_;
-    return broad - (broad - laid_) * from_edge / laid_;
+    if (std::abs(from_edge) >= broadest_) return turn_;
+    return broad - (broad - broadest_) * from_edge / broadest_;
 }
 
 double FollowedTurn::follow(double turn, double gone) {
     const double left = std::remainder(turn - turn_, std::numbers::pi);
     turn_ += left * -std::expm1(-gone / lambda_);
-    lay();
+    fall_over();
     return this->turn();
 }
 
@@ -382,11 +384,6 @@ bool is_lifted_at_turns(const StrokeSamples& trace, const HolderOptions& options
 constexpr double kOtherSide = 0.5;  // sine of the path's turn to the broad side from which on hair lies on that side
 constexpr double kComesOver =
     0.5;  // of the tuft's length, path before and after it stands up within which it is lifted
-// Sine of a toe's turn from its path up to which it is on its edge, and from which on its broad side is across.
-constexpr double kEdgeOn = 0.3, kBroadOn = 0.8;
-// Cosine of the turn of a path beyond which a hand that lifts a toe does not wait, and up to which it does; of that
-// between two samples, from which on it goes back.
-constexpr double kBends = 0.9, kIsStraight = 0.97, kSameWay = 0.7;
 constexpr double kJustTouches = 0.04;  // of the pressure, with which it stands up
 
 /// Direction in which a trace sets out; zero of a dot, which does not leave its first place.
@@ -432,39 +429,6 @@ void lift_to_other_side(StrokeSamples& trace, const HolderOptions& options, cons
             }
         }
         lies = i;
-    }
-}
-
-/// Shortens the lead of a toe, `lead` by sample, where the hand would go back as it lifts: hair springs forward as it
-/// is lifted, and leaves under the hand, so that all would leave at one place. The hand goes no further than to where
-/// it leaves; while it lifts the toe it goes on by `options.toe_end`: the edges leave first, and the stroke ends round.
-/// `broad`: how much the broad side is across the path, 0–1; on its edge a toe is no toe. A hand that waits in a bend
-/// would turn the hair about itself.
-void lead_to_the_end(const StrokeSamples& trace, const HolderOptions& options, std::span<const Turning> turning,
-                     std::span<const double> broad, std::span<Vec2> lead) {
-    const std::size_t n = trace.samples.size();
-    const auto depth = [&](std::size_t i) { return depth_of(options, trace.samples[i].pressure); };
-    const auto direction = [&](std::size_t i) {
-        const double taut = glm::length(turning[i].towards);
-        return taut > 1e-9 ? turning[i].towards / taut : Vec2{0};
-    };
-    const double round = options.toe_end / options.toe;
-    std::vector<double> along(n), most(n);  // metres, the lead and its bound
-    for (std::size_t i = n; i-- > 0;) {
-        along[i] = most[i] = glm::dot(lead[i], direction(i));
-        if (i + 1 == n || glm::dot(direction(i), direction(i + 1)) < kSameWay) continue;
-        const double gone = glm::distance(Vec2(trace.samples[i].position), Vec2(trace.samples[i + 1].position));
-        const double lifted = std::min(depth(i), options.toe) - std::min(depth(i + 1), options.toe);
-        most[i] = std::min(most[i], most[i + 1] + gone - std::max(0.0, round * lifted));
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-        if (!(most[i] < along[i])) continue;
-        std::size_t end = i;
-        double across = 1;
-        for (; end < n && most[end] < along[end]; ++end) across = std::min(across, broad[end]);
-        const double straight = glm::dot(direction(i), direction(end - 1));
-        const double part = across * smooth_step((straight - kBends) / (kIsStraight - kBends));
-        for (; i < end; ++i) lead[i] += part * (most[i] - along[i]) * direction(i);
     }
 }
 
@@ -543,8 +507,8 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     const double turn_leans = kLeanTurns * options.tip_lag_turn;
     double since_turn = 1e9, over = 0;  // metres; how much it turned back there
     const std::vector<Turning> turning = turnings_of(trace, options, ahead);
-    std::vector<Vec2> lead(trace.samples.size());
-    std::vector<double> broad(trace.samples.size());
+    std::vector<LedSample> led(trace.samples.size());
+    double along = 0;
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
         StrokeSample& s = trace.samples[i];
         const Vec2 p(s.position);
@@ -566,13 +530,15 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
         const double turned = turn.follow(s.roll - angle_of(towards), gone);
         const double roll = options.turned ? turned + angle_of(towards) : s.roll;
         before = p;
-        lead[i] = tip_lag_at(options, s.pressure, s.tilt, roll, towards);
-        broad[i] = smooth_step((std::abs(std::sin(s.roll - angle_of(towards))) - kEdgeOn) / (kBroadOn - kEdgeOn));
+        along += gone;
+        const Vec2 tip_lag = tip_lag_at(options, s.pressure, s.tilt, roll, towards);
+        led[i] = {towards, along, depth_of(options, s.pressure), s.roll - angle_of(towards), tip_lag};
+        if (!(s.pressure > 0)) turn.lift();
     }
-    if (options.toe > 0 && options.turned && !dot) lead_to_the_end(trace, options, turning, broad, lead);
+    if (!dot) shorten_tip_lag_at_end(led, options);
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
         Vec3& position = trace.samples[i].position;
-        position = Vec3(Vec2(position) - off + lead[i], position.z);
+        position = Vec3(Vec2(position) - off + led[i].tip_lag, position.z);
     }
     return trace;
 }

@@ -116,12 +116,14 @@ class FollowedTurn {
     double turn() const;
     /// Returns the turn in which the hair lies after a further `gone` metres at a ferrule turned by `turn` radians.
     double follow(double turn, double gone);
+    /// The hair is in the air: it does not lie any more.
+    void lift() { broadest_ = 0; }
 
   private:
-    void lay();
+    void fall_over();
 
     double lambda_, turn_;
-    double laid_ = 0;  // radians, broadest turn from the edge up to now
+    double broadest_ = 0;  // radians, turn from the edge of hair that came to lie; 0: it did not
 };
 
 /// Speed of setting down, ahead and down together: over the speed of the trace, and the least speed of the trace that
@@ -149,11 +151,7 @@ StrokeSamples add_turn_samples(const StrokeSamples& trace, const HolderOptions& 
 /// already tilts it ahead by more than that. A blade leans so at any landing, over `blade_landing` at least. It turns
 /// as late as the string (`BladeRoll`).
 ///
-/// Where a toe lifts on its broad side, in a path that turns by less than 14 to 26°, the lead λ along the path falls to
-///
-///     λ(s) = min over s' ≥ s of λ(s') + (s' − s) − toe_end/toe · (what of the toe is lifted from s to s'),
-///
-/// so that the hand does not go back, and goes on by `toe_end` while it lifts the toe: the edges leave first.
+/// Where a toe lifts, the tip lag is bounded by `shorten_tip_lag_at_end` (turn_back.h).
 ///
 /// A holder upright to 0.05 rad sets the brush down plumb and reaches its lean within 0.3 lengths of the tuft.
 ///

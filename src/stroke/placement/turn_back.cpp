@@ -18,6 +18,12 @@ Vec3 in_plane(const StrokeSample& s) {
     return {s.position.x, s.position.y, 0};
 }
 
+// Sine of a toe's turn from its path up to which it is on its edge, and from which on its broad side is across.
+constexpr double kEdgeOn = 0.3, kBroadOn = 0.8;
+// Cosine of the turn of a path beyond which a hand that lifts a toe does not wait, and up to which it does; of that
+// between two samples, from which on it goes back.
+constexpr double kBends = 0.9, kIsStraight = 0.97, kSameWay = 0.7;
+
 constexpr double kTremor = 0.05;  // of λ: motions that turn nothing
 
 /// Radians; 0 where one of them is zero.
@@ -90,6 +96,33 @@ std::vector<Turning> find_turnings(std::span<const StrokeSample> samples, double
         for (; i < end; ++i) out[i].lift = turn.lift(kLiftedTurns);
     }
     return out;
+}
+
+void shorten_tip_lag_at_end(std::span<LedSample> samples, const HolderOptions& options) {
+    if (!(options.toe > 0) || !options.turned) return;
+    const std::size_t n = samples.size();
+    const auto direction = [&](std::size_t i) {
+        const double taut = glm::length(samples[i].ahead);
+        return taut > 1e-9 ? samples[i].ahead / taut : Vec2{0};
+    };
+    const auto of_toe = [&](std::size_t i) { return std::min(samples[i].depth, options.toe); };
+    const double round = options.toe_end / options.toe;
+    std::vector<double> own(n), most(n);  // metres along the path, of each tip lag and its bound
+    for (std::size_t i = n; i-- > 0;) {
+        own[i] = most[i] = glm::dot(samples[i].tip_lag, direction(i));
+        if (i + 1 == n || glm::dot(direction(i), direction(i + 1)) < kSameWay) continue;
+        const double gone = samples[i + 1].along - samples[i].along, lifted = of_toe(i) - of_toe(i + 1);
+        most[i] = std::min(most[i], most[i + 1] + gone - std::max(0.0, round * lifted));
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        if (!(most[i] < own[i])) continue;
+        std::size_t end = i;
+        double across = 1;
+        for (; end < n && most[end] < own[end]; ++end) across = std::min(across, std::abs(std::sin(samples[end].turn)));
+        const double part = smooth_step((across - kEdgeOn) / (kBroadOn - kEdgeOn)) *
+                            smooth_step((glm::dot(direction(i), direction(end - 1)) - kBends) / (kIsStraight - kBends));
+        for (; i < end; ++i) samples[i].tip_lag += part * (most[i] - own[i]) * direction(i);
+    }
 }
 
 void TurnFollower::follow(const Vec3& position, const Vec3& string, double length, const LiftedTurns& lifted) {

@@ -9,8 +9,8 @@
 #include "stroke/placement/placement.h"
 
 /// \file
-/// Lift of a wide ferrule where its path turns back. Called by tip_lag.h for recorded samples, and by
-/// stroke/pointer/pointer_input.h for a hand whose next sample nobody knows.
+/// Lift of a wide ferrule where its path turns back, and of a toe where its stroke ends. Called by tip_lag.h for
+/// recorded samples, and by stroke/pointer/pointer_input.h for a hand whose next sample nobody knows.
 ///
 /// Hair that is pushed before the hand lies on ahead of it for centimetres, then falls along its row. The hand lifts
 /// it, carries it over and sets it down to its other side. Where it is in the turn says a string of length λ, on which
@@ -71,6 +71,25 @@ struct Turning {
 /// `lifted`: whether a turn lifts the hair. Cost: linear.
 std::vector<Turning> find_turnings(std::span<const StrokeSample> samples, double string, const Vec2& ahead,
                                    bool lifted);
+
+/// One sample of a hand that leads its ink by the tip lag.
+struct LedSample {
+    Vec2 ahead{0};     ///< direction of the path, up to 1 long
+    double along = 0;  ///< metres of path up to here
+    double depth = 0;  ///< metres of the unbent tip below the surface
+    double turn = 0;   ///< radians, of the ferrule's x from the path
+    Vec2 tip_lag{0};   ///< metres, in the axes of `ahead`
+};
+
+/// Shortens the tip lags of a ferrule with a toe, of other brushes none, where the hand would go back as it lifts. Hair
+/// springs forward as it is lifted and leaves under the hand: that of a toe all at one place, in a square end. Where
+/// the toe is lifted on its broad side, in a path that turns by less than 14 to 26°, the part λ along the path falls to
+///
+///     λ(s) = min over s' ≥ s of λ(s') + (s' − s) − toe_end/toe · (what of the toe is lifted from s to s'),
+///
+/// so that the hand does not go back, and goes on by `toe_end` while it lifts the toe: the edges leave first, and the
+/// stroke ends round. In a bend a hand that waits would turn the hair about itself. Cost: linear.
+void shorten_tip_lag_at_end(std::span<LedSample> samples, const HolderOptions& options);
 
 /// A hand that turns while nobody knows its next sample: lifted by what is known of the turn.
 class TurnFollower {

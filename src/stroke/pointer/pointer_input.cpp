@@ -208,6 +208,7 @@ void PointerInput::turn_holder(const Aim& aim, const Vec3& motion) {
     const double turn = roll_at(aim) - std::atan2(-ahead.y, ahead.x);
     if (!turns_.followed) turns_.followed.emplace(holder_.tuft_length, turn);
     turns_.followed->follow(turn, glm::length(motion));
+    if (!(turns_.back.lift().pressed(glm::length(strings_.dragged.string)) > 0)) turns_.followed->lift();
 }
 
 // Where the holder is for ink at the point: ahead along the string, and under a lean aside.
