@@ -61,5 +61,43 @@ TEST(StampBatch, PlansAndDepositsWithoutAllocationsOnceItIsWarm) {
     set_thread_count(0);
 }
 
+// Of three runs over the same place the last finds tiles, buffers and blocks as the second left them. A pose in twenty
+// may find a new tile beside the line, or let a list grow. Wet ink is not among them: its film spreads.
+TEST(Stamps, AWarmStrokeMakesNoAllocationForAStamp) {
+    set_thread_count(1);
+    const Model model = sheet();
+    struct Case {
+        const char *brush, *ink;
+    };
+    for (const auto& [brush, ink] :
+         {Case{"wolf-medium", "carbon"}, Case{"bright-12", "carbon"}, Case{"sword-8", "carbon"},
+          Case{"leaf-28", "carbon"}, Case{"mixed-medium", "titanium-white-paste"},
+          Case{"flat-12", "titanium-white-paste"}}) {
+        PaintStroke stroke = line(brush, 0.2 * brush::load_preset(brush).length);
+        stroke.ink = ink;
+        const std::vector<StrokeSample> way = stroke.trace.samples;
+        const double span = way.back().time + 0.01;
+        for (int run = 1; run < 3; ++run)
+            for (StrokeSample s : way) {
+                s.time += run * span;
+                stroke.trace.samples.push_back(s);
+            }
+        Document painting(model);
+        std::vector<std::uint64_t> made;
+        made.reserve(100000);
+        std::uint64_t before = 0;
+        painting.watch_poses([&](const StrokeSession&, double part) {
+            const std::uint64_t now = allocations_of_this_thread();
+            if (part > 0.7) made.push_back(now - before);
+            before = now;
+        });
+        painting.paint(stroke);
+        ASSERT_GT(made.size(), 50u) << brush << " " << ink;
+        std::ranges::sort(made);
+        EXPECT_EQ(made[made.size() * 19 / 20 - 1], 0u) << brush << " " << ink;
+    }
+    set_thread_count(0);
+}
+
 }  // namespace
 }  // namespace tuft::stroke

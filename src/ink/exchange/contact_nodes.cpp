@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/system/recycled.h"
-
 namespace tuft::ink {
 namespace {
 
@@ -118,7 +116,7 @@ NodeMixes mixes_at(const Reservoir& tuft, const NodeContact& nodes) {
 
 void withdraw_contents(Reservoir& tuft, const NodeContents& given, const NodeContact& nodes) {
     const std::size_t n = tuft.content.size();
-    std::vector<double> requested(n);
+    Recycled<double> requested(n);
     for (int p = 0; p < kPlanes; ++p) {
         double lacking = 0;
         std::fill(requested.begin(), requested.end(), 0.0);

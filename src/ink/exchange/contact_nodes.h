@@ -3,8 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "core/system/recycled.h"
 #include "ink/exchange/contact_grid.h"
 #include "ink/exchange/reservoir.h"
 
@@ -28,7 +28,7 @@ struct NodeContact {
         float part = 0;
     };
     std::array<std::uint32_t, kNodes + 1> begin{};  ///< of node n: [begin[n], begin[n + 1])
-    std::vector<Share> shares;
+    Recycled<Share> shares;
 
     std::span<const Share> of(int node) const {
         return std::span(shares).subspan(begin[node], begin[node + 1] - begin[node]);

@@ -65,18 +65,18 @@ double part_within(const ReservoirLayout& l, std::size_t i, const Reach& reach) 
 }
 
 /// Planes of which some cell holds something.
-std::vector<int> planes_in(const Reservoir& tuft) {
+Recycled<int> planes_in(const Reservoir& tuft) {
     Content most{};
     for (const Content& c : tuft.content)
         for (int p = 0; p < kPlanes; ++p) most[p] = std::max(most[p], c[p]);
-    std::vector<int> planes;
+    Recycled<int> planes;
     for (int p = 0; p < kPlanes; ++p)
         if (most[p] > 0) planes.push_back(p);
     return planes;
 }
 
-void flow_step(Reservoir& tuft, double seconds, std::span<const int> planes, std::vector<Content>& change,
-               std::vector<double>& total) {
+void flow_step(Reservoir& tuft, double seconds, std::span<const int> planes, std::span<Content> change,
+               std::span<double> total) {
     const std::size_t n = tuft.content.size();
     for (std::size_t i = 0; i < n; ++i) {
         change[i].fill(0);
@@ -307,9 +307,9 @@ void flow(Reservoir& tuft, double dt, FlowTo to) {
     const double due = std::floor(tuft.unspent / kFlowStep + 5e-7);
     if (!(due >= 1) && to == FlowTo::whole_step) return;
     tuft.unspent = std::max(0.0, tuft.unspent - due * kFlowStep);
-    const std::vector<int> planes = planes_in(tuft);
-    std::vector<Content> change(tuft.content.size());
-    std::vector<double> total(tuft.content.size());
+    const Recycled<int> planes = planes_in(tuft);
+    Recycled<Content> change(tuft.content.size());
+    Recycled<double> total(tuft.content.size());
     const std::size_t steps = std::min(static_cast<std::size_t>(std::min(due, 1e9)), kMostSteps);
     for (std::size_t k = 0; k < steps; ++k) flow_step(tuft, kFlowStep, planes, change, total);
     if (to == FlowTo::now) flow_step(tuft, std::exchange(tuft.unspent, 0), planes, change, total);

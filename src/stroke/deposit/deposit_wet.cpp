@@ -43,7 +43,7 @@ class WetDeposit : public DepositModel {
     double deposit(Stamp stamp, TuftInHand& tuft, const DepositContact& contact) override {
         ink::Reservoir& reservoir = tuft.brush.reservoir;
         const ink::ContactCells& cells = contact.hair.cells();
-        const std::vector<ink::BundleFirmness> bundles = furrows_.advance(tuft, contact.hair, contact.motion.travel);
+        const Recycled<ink::BundleFirmness> bundles = furrows_.advance(tuft, contact.hair, contact.motion.travel);
         const ink::NodeAreas areas = exposure_.expose(stamp);
         const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
         const bool foam = brush::is_foam(tuft.preset());

@@ -19,19 +19,19 @@ double noise(std::uint64_t seed, double x) {
 
 }  // namespace
 
-std::vector<ink::BundleFirmness> FurrowProfile::advance(const TuftInHand& tuft, const HairContact& hair,
-                                                        double travel) {
+Recycled<ink::BundleFirmness> FurrowProfile::advance(const TuftInHand& tuft, const HairContact& hair, double travel) {
     const ink::Reservoir& reservoir = tuft.brush.reservoir;
     const brush::Bundles& bundles = tuft.brush.tuft.bundles;
     const std::size_t n = reservoir.n_bundles(), n_cells = reservoir.n_cells();
     const ink::ContactCells& cells = hair.cells();
-    std::vector<double> lies(n, 0);
+    Recycled<double> lies(n, 0);
     for (std::size_t i = 0; i < cells.size(); ++i) lies[i / n_cells] += static_cast<double>(cells[i]);
     const double firmest = *std::max_element(lies.begin(), lies.end());
     const double part = firmness_.empty() ? 1 : -std::expm1(-(travel - updated_at_) / kSettleLength);
     firmness_.resize(n, 0);
     updated_at_ = travel;
-    std::vector<ink::BundleFirmness> profile;
+    Recycled<ink::BundleFirmness> profile;
+    profile.reserve(n);
     for (std::size_t k = 0; k < n; ++k) {
         firmness_[k] += part * ((firmest > 0 ? lies[k] / firmest : 0) - firmness_[k]);
         const double roll = noise(hash_bits(bundles.seed, 3000 + k), travel / kRollLength);

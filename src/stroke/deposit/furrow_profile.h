@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/system/recycled.h"
 #include "ink/film/tile/paste.h"
 #include "stroke/contact/hair_contact.h"
 
@@ -16,7 +17,7 @@ class FurrowProfile {
   public:
     /// Returns the bundles at the next stamp, after `travel` metres of the stroke: position over the patch's width,
     /// 0–1, and firmness relative to the firmest bundle.
-    std::vector<ink::BundleFirmness> advance(const TuftInHand& tuft, const HairContact& hair, double travel);
+    Recycled<ink::BundleFirmness> advance(const TuftInHand& tuft, const HairContact& hair, double travel);
 
   private:
     std::vector<double> firmness_;  // [bundles]

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "brush/state/tuft_state.h"
+#include "core/system/recycled.h"
 
 /// \file
 /// Poses at even steps from samples at any rate. Called by `StrokeSession` for every stroke.
@@ -48,7 +49,8 @@ class Resampler {
     void emit(const brush::Pose& pose, std::vector<brush::Pose>& out);
 
     ResampleOptions options_;
-    std::deque<brush::Pose> window_;  ///< up to four samples; the segment in work is the middle one
+    std::deque<brush::Pose, Recycler<brush::Pose>>
+        window_;  ///< up to four samples; the segment in work is the middle one
     std::size_t emitted_ = 0;
     double since_last_ = 0;  ///< length since the last pose, metres
     bool has_before_ = false;

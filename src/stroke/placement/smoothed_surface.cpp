@@ -80,15 +80,27 @@ TUFT_CLONES void weigh(Heights& heights, const double* c, int terms, double belo
 }
 
 /// Sums of the weighted products of the terms, and with the heights. Rows of both are padded.
-TUFT_CLONES void sum_products(const Heights& heights, int terms, double (*lhs)[Heights::kPadded], double* rhs) {
+template <int N>
+[[gnu::always_inline]] inline void sum_in_registers(const Heights& heights, double (*lhs)[Heights::kPadded],
+                                                    double* rhs) {
+    double left[N][Heights::kPadded] = {}, right[N] = {};
     for (int i = 0; i < heights.size; ++i) {
         const double* all = heights.terms[i];
-        for (int k = 0; k < terms; ++k) {
+        for (int k = 0; k < N; ++k) {
             const double scaled = heights.weight[i] * all[k];
-            rhs[k] += scaled * heights.z[i];
-            for (int j = 0; j < Heights::kPadded; ++j) lhs[k][j] += scaled * all[j];
+            right[k] += scaled * heights.z[i];
+            for (int j = 0; j < Heights::kPadded; ++j) left[k][j] += scaled * all[j];
         }
     }
+    std::copy_n(&left[0][0], N * Heights::kPadded, &lhs[0][0]);
+    std::copy_n(right, N, rhs);
+}
+
+TUFT_CLONES void sum_products(const Heights& heights, int terms, double (*lhs)[Heights::kPadded], double* rhs) {
+    if (terms == Heights::kTerms)
+        sum_in_registers<Heights::kTerms>(heights, lhs, rhs);
+    else
+        sum_in_registers<3>(heights, lhs, rhs);
 }
 
 /// Least sum of pseudo-Huber distances, which narrow grooves hardly bend; convex, so that the
@@ -98,7 +110,7 @@ bool fit(Heights& heights, double below, std::array<double, N>& c) {
     constexpr int kPasses = 8;
     c.fill(0);
     for (int pass = 0; pass < kPasses; ++pass) {
-        double sums[N][Heights::kPadded] = {};
+        double sums[N][Heights::kPadded];
         std::array<std::array<double, N>, N> lhs{};
         std::array<double, N> rhs{};
         weigh(heights, c.data(), N, below, pass == 0);
