@@ -242,11 +242,12 @@ void Loop::State::run_servo() {
 }
 
 /// Blocks for the solver's thread. What trials at rims, edges and a shut line held at most at once: of 512 bytes 46 for
-/// one spine, 565 for nine; of 8 kB 15 and 117; of 32 kB 24; of 64 to 256 kB 4. About twice of it is there.
+/// one spine, 565 for nine; of 8 kB 15 and 117; of 16 kB 3 and 31; of 32 kB 4 and 11, 24 for five; of 64 to 256 kB 4.
+/// Up to 64 kB at least 1.5 times of it are there, above twice.
 void fill_store(int spines) {
     fill_block_store(1024, 64 * spines);
-    fill_block_store(std::size_t{16} * 1024, 32 * spines);
-    fill_block_store(std::size_t{64} * 1024, 24);
+    fill_block_store(std::size_t{8} * 1024, 32 * spines);
+    fill_block_store(std::size_t{64} * 1024, 48);
     fill_block_store(std::size_t{256} * 1024, 8);
 }
 
