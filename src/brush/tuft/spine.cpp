@@ -99,16 +99,7 @@ namespace {
 
 /// Planes of a spine's nodes (tip first) as obstacles of its rod (root first).
 Recycled<rod::Obstacle> obstacles_of(const Preset& p, const Spine& spine, std::span<const ContactPlane> planes) {
-    const std::size_t count = spine.rest.radius.size();
-    Recycled<rod::Obstacle> out;
-    if (planes.empty()) return out;
-    out.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const ContactPlane& plane = planes.size() == 1 ? planes[0] : planes[count - 1 - i];
-        out[i] = {plane.origin / p.length, plane.normal, spine.rest.radius[i] / p.length,
-                  plane.beyond_origin / p.length, plane.beyond_normal};
-    }
-    return out;
+    return obstacles_from(p, spine, planes, [&](std::size_t i, const Vec3&) { return spine.rest.radius[i]; });
 }
 
 /// Walls beside a spine and across from it where its ferrule is turned by `rotation`.

@@ -37,6 +37,24 @@ rod::Clamp clamp_of(const Preset& preset, const Pose& pose);
 /// Contact law in units of L and B0 of one of `share` equal spines, for a solve over `dt` seconds.
 rod::Law law_of(const Preset& preset, double wetness, double share, double dt);
 
+/// Returns the planes of a spine's nodes (tip first, or one for all, or none) as obstacles of its rod (root first).
+/// `reach(i, normal)`: of the hair about node i from its centre, metres.
+template <class Reach>
+Recycled<rod::Obstacle> obstacles_from(const Preset& preset, const Spine& spine, std::span<const ContactPlane> planes,
+                                       const Reach& reach) {
+    const std::size_t count = spine.rest.radius.size();
+    const double length = preset.length;
+    Recycled<rod::Obstacle> out;
+    if (planes.empty()) return out;
+    out.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const ContactPlane& plane = planes.size() == 1 ? planes[0] : planes[count - 1 - i];
+        out[i] = {plane.origin / length, plane.normal, reach(i, plane.normal) / length, plane.beyond_origin / length,
+                  plane.beyond_normal};
+    }
+    return out;
+}
+
 /// Number of parts in which a tuft whose tip is bent by `bend` radians follows its ferrule from one pose to another.
 int count_substeps(const Preset& preset, const Pose& from, const Pose& to, double bend);
 

@@ -48,17 +48,9 @@ struct NodeAxes {
 /// Obstacles of one spine (root first) from its planes (tip first). The tuft's reach depends on the direction.
 Recycled<rod::Obstacle> obstacles_of_wide(const Preset& p, const Spine& spine, const NodeAxes& axes,
                                           std::span<const ContactPlane> planes) {
-    const std::size_t count = spine.rest.radius.size();
-    Recycled<rod::Obstacle> out;
-    if (planes.empty()) return out;
-    out.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const ContactPlane& plane = planes.size() == 1 ? planes[0] : planes[count - 1 - i];
-        const double reach = rest_reach(spine, i, axes.broad[i], axes.along[i], plane.normal);
-        out[i] = {plane.origin / p.length, plane.normal, reach / p.length, plane.beyond_origin / p.length,
-                  plane.beyond_normal};
-    }
-    return out;
+    return obstacles_from(p, spine, planes, [&](std::size_t i, const Vec3& normal) {
+        return rest_reach(spine, i, axes.broad[i], axes.along[i], normal);
+    });
 }
 
 /// Half-width of the spread section of each node in a direction of the ferrule frame across the hair, without

@@ -18,6 +18,12 @@ auto nearest_part(const Vec& a, const Vec& b, const Vec& p) {
     return length2 > 0 ? std::clamp(glm::dot(p - a, edge) / length2, Real(0), Real(1)) : Real(0);
 }
 
+/// Returns true when the ray from p towards +x crosses the segment a–b. Inside a polygon (even-odd) it crosses an odd
+/// number of edges.
+inline bool crosses_ray(const Vec2& a, const Vec2& b, const Vec2& p) {
+    return (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x);
+}
+
 /// Returns the distance from p to the segment a–b.
 template <class Vec>
 auto segment_distance(const Vec& a, const Vec& b, const Vec& p) {

@@ -11,6 +11,17 @@
 #include "footprint/outline/outline_parts.h"
 
 namespace tuft::footprint {
+
+EllipseAxes ellipse_of(const Vec3& broad, const Vec3& thick, const Vec2& turn) {
+    using std::numbers::pi;
+    const double own = std::atan2(-turn.y, turn.x);
+    const double across = 2 * glm::dot(broad, thick), more = glm::dot(broad, broad) - glm::dot(thick, thick);
+    double angle = 0.5 * std::atan2(across, more);
+    angle += 0.5 * pi * std::round((own - angle) / (0.5 * pi));
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {c * broad + s * thick, c * thick - s * broad, {c, -s}};
+}
+
 namespace {
 
 constexpr double kPi = std::numbers::pi;

@@ -66,6 +66,15 @@ struct Cut {
     static constexpr double kStripChord = 0.8862269254527580;  ///< √π/2, see brush::in_branch
 };
 
+/// Half axes of an ellipse of hair, metres, and the turn of its broad side as in `brush::Section`.
+struct EllipseAxes {
+    Vec3 e{0}, m{0};
+    Vec2 turn{1, 0};
+};
+
+/// Returns the axes of the ellipse p(ω) = cos ω · broad + sin ω · thick, of its four turns the one nearest to `turn`.
+EllipseAxes ellipse_of(const Vec3& broad, const Vec3& thick, const Vec2& turn);
+
 /// The section at the part f of the way between two, linear in all that it has.
 Cut cut_between(const Cut& p, const Cut& q, double f);
 

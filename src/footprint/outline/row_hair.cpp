@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "core/ease.h"
@@ -70,12 +69,7 @@ Half half_to(const Cut& own, const Cut& beside, double differ) {
 /// Gives a section other axes of its hair: their ellipse, of the axes that differ least from its own. `widens`: as in
 /// Halves.
 void set_axes(Cut& cut, const Vec3& broad, const Vec3& thick, double widens) {
-    using std::numbers::pi;
-    const double own = std::atan2(-cut.turn.y, cut.turn.x);
-    const double across = 2 * glm::dot(broad, thick), more = glm::dot(broad, broad) - glm::dot(thick, thick);
-    double turn = 0.5 * std::atan2(across, more);
-    turn += 0.5 * pi * std::round((own - turn) / (0.5 * pi));
-    const Vec3 e = std::cos(turn) * broad + std::sin(turn) * thick, m = std::cos(turn) * thick - std::sin(turn) * broad;
+    const auto [e, m, turn] = ellipse_of(broad, thick, cut.turn);
     const double a = glm::length(e), b = glm::length(m);
     if (!(std::max(a, b) > 1e-9)) return;
     const Vec3 hair = hair_of(cut);
@@ -85,7 +79,7 @@ void set_axes(Cut& cut, const Vec3& broad, const Vec3& thick, double widens) {
     // The cap of an edge ends without thickness.
     cut.e = a > 1e-9 ? e / a : glm::cross(m / b, hair);
     cut.m = b > 1e-9 ? m / b : glm::cross(hair, cut.e);
-    cut.turn = {std::cos(turn), -std::sin(turn)};
+    cut.turn = turn;
     // What comes to lie flat keeps the part of its height that is on the surface.
     if (before > 0) cut.z *= std::lerp(cut.half_height() / before, 1.0, widens);
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "atlas/texels/log_map.h"
+#include "core/geometry/segment.h"
 #include "core/noise.h"
 #include "core/random.h"
 
@@ -69,8 +70,7 @@ struct Bounds {
 bool contains(const Polygon& polygon, const Vec2& p) {
     bool inside = false;
     for (std::size_t k = 0; k < polygon.size(); ++k) {
-        const Vec2 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
-        if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
+        if (crosses_ray(polygon[k], polygon[(k + 1) % polygon.size()], p)) inside = !inside;
     }
     return inside;
 }

@@ -24,20 +24,14 @@ struct HairAxes {
 
     /// Gives a section the ellipse of these axes, whose own differ least from what they were.
     void set(brush::Section& s) const {
-        using std::numbers::pi;
-        const double across = 2 * glm::dot(broad, thick), more = glm::dot(broad, broad) - glm::dot(thick, thick);
-        const double own = std::atan2(-s.turn.y, s.turn.x);
-        double turn = 0.5 * std::atan2(across, more);
-        turn += 0.5 * pi * std::round((own - turn) / (0.5 * pi));
-        const Vec3 e = std::cos(turn) * broad + std::sin(turn) * thick,
-                   m = std::cos(turn) * thick - std::sin(turn) * broad;
+        const auto [e, m, turn] = ellipse_of(broad, thick, s.turn);
         const double a = glm::length(e), b = glm::length(m);
         if (!(std::min(a, b) > 1e-9)) return;
         s.a = a;
         s.b = b;
         s.e = e / a;
         s.m = m / b;
-        s.turn = {std::cos(turn), -std::sin(turn)};
+        s.turn = turn;
     }
 };
 

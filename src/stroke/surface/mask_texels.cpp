@@ -111,7 +111,7 @@ double inside_by(const std::vector<Vec2>& polygon, const Vec2& p) {
     for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
         const Vec2 &a = polygon[j], &b = polygon[i], off = (p - a) - nearest_part(a, b, p) * (b - a);
         nearest2 = std::min(nearest2, glm::dot(off, off));
-        if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
+        if (crosses_ray(a, b, p)) inside = !inside;
     }
     return inside ? std::sqrt(nearest2) : -std::sqrt(nearest2);
 }

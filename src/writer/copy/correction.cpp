@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/text/text.h"
+#include "core/text/words.h"
 
 namespace tuft::writer {
 namespace {
@@ -47,11 +48,7 @@ CopiedPicture take_apart(const io::Image8& picture, const std::string& source, c
 
 std::vector<PieceCut> parse_cuts(std::string_view text) {
     std::vector<PieceCut> cuts;
-    constexpr std::string_view kBetween = " ,\t\n";
-    for (std::size_t at = text.find_first_not_of(kBetween); at != std::string_view::npos;
-         at = text.find_first_not_of(kBetween, at)) {
-        const std::string_view word = text.substr(at, text.find_first_of(kBetween, at) - at);
-        at += word.size();
+    for (const std::string_view word : split_words(text)) {
         const std::size_t colon = word.find(':');
         std::size_t number = 0;
         double part = 0;

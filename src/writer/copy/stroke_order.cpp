@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/geometry/plane_vectors.h"
 #include "core/text/units.h"
+#include "core/text/words.h"
 #include "writer/gesture/stroke_line.h"
 
 namespace tuft::writer {
@@ -383,11 +384,7 @@ StrokeOrder order_by_rules(const Skeleton& skeleton) {
 StrokeOrder parse_order(std::string_view text, std::size_t n_pieces) {
     StrokeOrder order;
     std::vector<std::uint8_t> used(n_pieces, 0);
-    constexpr std::string_view kBetween = " ,\t\n";
-    for (std::size_t at = text.find_first_not_of(kBetween); at != std::string_view::npos;
-         at = text.find_first_not_of(kBetween, at)) {
-        const std::string_view word = text.substr(at, text.find_first_of(kBetween, at) - at);
-        at += word.size();
+    for (const std::string_view word : split_words(text)) {
         std::vector<PieceUse>& stroke = order.emplace_back();
         for (std::size_t i = 0; i <= word.size();) {
             const std::string_view item = word.substr(i, word.find('+', i) - i);

@@ -33,17 +33,6 @@ std::optional<Head> head_of(const LineSegment& s) {
     return std::nullopt;
 }
 
-double distance_to(const Vec2& p, const std::vector<Vec2>& line) {
-    double least = 1e300;
-    for (std::size_t i = 1; i < line.size(); ++i) {
-        const Vec2 e = line[i] - line[i - 1];
-        const double size = glm::dot(e, e);
-        const double t = size > 0 ? std::clamp(glm::dot(p - line[i - 1], e) / size, 0.0, 1.0) : 0;
-        least = std::min(least, glm::distance(p, line[i - 1] + t * e));
-    }
-    return least;
-}
-
 std::optional<std::vector<Vec2>> with_head(const Glyph& glyph, std::size_t stroke) {
     const StrokeLine line = make_stroke_line(glyph.strokes[stroke].median);
     const bool has_cue = line.segments.size() > 1 && line.segments[0].length < kCue;
@@ -52,7 +41,8 @@ std::optional<std::vector<Vec2>> with_head(const Glyph& glyph, std::size_t strok
     if (!usual || main.length < kLeast) return std::nullopt;
     double nearest = 1e300;
     for (std::size_t k = 0; k < glyph.strokes.size(); ++k)
-        if (k != stroke) nearest = std::min(nearest, distance_to(line.points.front(), glyph.strokes[k].median));
+        if (k != stroke)
+            nearest = std::min(nearest, nearest_on_line(glyph.strokes[k].median, line.points.front()).distance);
     if (nearest < kOn) return std::nullopt;
     const double length = line.along[main.last];
     const Vec2 from = line.at(std::min(kAxisFrom, kAxisFromPart * length)),

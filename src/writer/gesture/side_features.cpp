@@ -18,21 +18,6 @@ double angle_of(const Vec2& d) {
     return std::atan2(d.y, d.x);
 }
 
-double distance_to(const std::vector<Vec2>& line, const Vec2& p, Vec2* nearest = nullptr) {
-    double least = 1e300;
-    for (std::size_t i = 1; i < line.size(); ++i) {
-        const Vec2 e = line[i] - line[i - 1];
-        const double size = glm::dot(e, e);
-        const double t = size > 0 ? std::clamp(glm::dot(p - line[i - 1], e) / size, 0.0, 1.0) : 0;
-        const Vec2 q = line[i - 1] + t * e;
-        if (const double d = glm::distance(p, q); d < least) {
-            least = d;
-            if (nearest) *nearest = q;
-        }
-    }
-    return least;
-}
-
 /// Room to the nearest other line at a point, over all of them and by the side of the direction.
 struct SideRoom {
     double all = kFarNeighbour, left = kFarNeighbour, right = kFarNeighbour;
@@ -41,8 +26,7 @@ SideRoom room_at(const Glyph& glyph, std::size_t stroke, const Vec2& p, const Ve
     SideRoom room;
     for (std::size_t k = 0; k < glyph.strokes.size(); ++k) {
         if (k == stroke) continue;
-        Vec2 nearest{0};
-        const double d = distance_to(glyph.strokes[k].median, p, &nearest);
+        const auto [nearest, d] = nearest_on_line(glyph.strokes[k].median, p);
         room.all = std::min(room.all, d);
         const Vec2 off = nearest - p;
         double& side = direction.x * off.y - direction.y * off.x > 0 ? room.left : room.right;

@@ -7,6 +7,7 @@
 
 #include "core/cubic.h"
 #include "core/geometry/plane_vectors.h"
+#include "core/geometry/segment.h"
 #include "core/text/units.h"
 
 namespace tuft::writer {
@@ -81,6 +82,15 @@ LineSegment segment_of(const StrokeLine& line, std::size_t first, std::size_t la
 }
 
 }  // namespace
+
+NearestPoint nearest_on_line(std::span<const Vec2> line, const Vec2& p) {
+    NearestPoint nearest;
+    for (std::size_t i = 1; i < line.size(); ++i) {
+        const Vec2 q = line[i - 1] + nearest_part(line[i - 1], line[i], p) * (line[i] - line[i - 1]);
+        if (const double d = glm::distance(p, q); d < nearest.distance) nearest = {q, d};
+    }
+    return nearest;
+}
 
 std::vector<Vec2> curve_through(std::span<const Vec2> line) {
     std::vector<Vec2> p;

@@ -42,6 +42,15 @@ struct StrokeLine {
 /// from the ends. `reach` replaces the 28 units, and the 36 by as many more. Precondition: at least two points.
 StrokeLine make_stroke_line(std::span<const Vec2> median, double reach = 28);
 
+/// Point of a polyline, and how far it is.
+struct NearestPoint {
+    Vec2 point{0};
+    double distance = 1e300;
+};
+
+/// Returns the point of a polyline that is closest to p. Of fewer than two points: 1e300 away.
+NearestPoint nearest_on_line(std::span<const Vec2> line, const Vec2& p);
+
 /// Returns a smooth curve through the points of a polyline, points at most `kApart` units apart: cubic Hermite pieces,
 /// with tangents of the circle through three neighbours. Turns above 40° stay corners; straight pieces beside a
 /// corner stay straight.
