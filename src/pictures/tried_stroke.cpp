@@ -71,13 +71,13 @@ std::vector<stroke::StrokeSample> wave(const brush::Preset& preset, double heigh
     return samples;
 }
 
-/// Whether a brush is dabbed: foam, and hair that is cut flat.
-bool is_dabbed(const brush::Preset& preset) {
+/// Whether a brush makes dots: foam, and hair that is cut flat.
+bool makes_dots(const brush::Preset& preset) {
     return brush::is_foam(preset) || (preset.spines > 1 && !brush::has_broad_side(preset));
 }
 
 /// Pressed and lifted in one place.
-std::vector<stroke::StrokeSample> dab(double x, double pressure, double roll) {
+std::vector<stroke::StrokeSample> dot_stroke(double x, double pressure, double roll) {
     std::vector<stroke::StrokeSample> samples;
     for (int i = 0; i <= 20; ++i) {
         const double s = i / 20.0;
@@ -116,7 +116,7 @@ TriedStroke picture_of(const stroke::Document& painting) {
 
 double tried_height(const brush::Preset& preset) {
     double width = 0;
-    if (is_dabbed(preset)) {
+    if (makes_dots(preset)) {
         width = 2 * preset.radius * (brush::is_foam(preset) ? kOfFoam : kOfCutHair) / kOfWidth;
     } else if (brush::has_broad_side(preset)) {
         width = preset.width + 2 * preset.length * std::sin(preset.splay);
@@ -132,9 +132,9 @@ TriedStroke paint_tried_stroke(const brush::Preset& preset, const ProgressFn& pr
     const stroke::Model sheet = make_sheet(height / kHeight);
     stroke::Document painting(sheet, {.substrate = "rice-paper", .tip_lags = tip_lags});
     painting.use(preset);
-    if (is_dabbed(preset)) {
+    if (makes_dots(preset)) {
         for (int k = -1; k <= 1; ++k)
-            painting.paint(entry_of(preset, dab(1.15 * k * height, 0.5 - 0.3 * k, 25 * k * kDegree)), progress);
+            painting.paint(entry_of(preset, dot_stroke(1.15 * k * height, 0.5 - 0.3 * k, 25 * k * kDegree)), progress);
     } else {
         painting.paint(entry_of(preset, wave(preset, height)), progress);
     }

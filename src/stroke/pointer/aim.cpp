@@ -11,7 +11,7 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr double kShallow = 0.2;             // of how far gaps are felt: what is less deep is relief, and followed
+constexpr double kShallow = 0.2;             // of the reach for gaps: what is less deep is relief, and followed
 constexpr double kBent = 0.5;                // of it: how far two sides of a gap may lie out of one plane
 constexpr int kPairs = 12;                   // of rays round the aim
 constexpr std::size_t kAgreeing = 3;         // of them that must lie on the surface
