@@ -537,7 +537,7 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
         }
         if (s.sources.empty()) s.prepare(canvas);
         s.air.look(s, s.sources);
-        const double slower = seconds > kLongWait ? s.air.slower() : 1;
+        const double slower = seconds > kLongWait && !s.sheets.run_on() ? s.air.slower() : 1;
         s.level_steps.set(least, slower);
         StepChoice chosen = choose_step(params, s, {s.any_relief, running, slower}, left);
         const double dt = chosen.dt;

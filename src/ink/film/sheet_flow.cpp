@@ -244,6 +244,11 @@ void SheetFlow::release() {
     slots_ = {};
     nodes_ = {};
     edges_ = {};
+    wet_ = {};
+    w_ = pores_ = weight_on_ = mobile_ = {};
+    inflow_ = {};
+    pigment_ = {};
+    runs_ = changed_ = {};
 }
 
 double SheetFlow::rate() const {

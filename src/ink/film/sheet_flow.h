@@ -47,17 +47,19 @@ struct Downhill {
 /// narrow tongue hold it too. m is 0 for columns that hold and 1 for those that run. Liquid enters dry texels only from
 /// more than w_c + pin.
 ///
-/// At the edge of the model columns hold. Where the steepness is below 0.03 liquid stays, and takes up what comes.
+/// At the edge of the model columns hold. Where the steepness is below 0.1 liquid stays, and takes up what comes.
 class SheetFlow {
   public:
     /// Must be called before the first `run` and whenever parameters may have changed. `again`: this call follows the
     /// one before.
     void start(const FilmParams& params, const TileList& tiles, bool again);
-    /// Gives its memory back, 9 KiB a tile.
+    /// Gives its memory back, some 40 KiB a tile.
     void release();
     /// Advances the sheets by `seconds`. Where none ran the last time, they are looked for every 0.25 s. Returns the
     /// written slots, ascending.
     std::vector<std::uint32_t> run(Canvas& canvas, TileList& tiles, double seconds, const WetFilm::BeforeFn& before);
+    /// Whether some ran in the last `run`.
+    bool run_on() const { return ran_ && glm::length(params_.weight.down) > 0; }
     /// Whether some went further than a texel in the last `run`.
     bool fast() const { return fast_; }
     /// Whether a sheet ran there in the last `run`: no bead comes off it.
