@@ -548,6 +548,7 @@ std::vector<std::uint32_t> SheetFlow::store(Canvas& canvas, int pigments, const 
 
 std::vector<std::uint32_t> SheetFlow::run(Canvas& canvas, TileList& tiles, double seconds,
                                           const WetFilm::BeforeFn& before) {
+    if (!(params_.weight.hysteresis > 0)) return {};
     runs_.clear();
     fast_ = false;
     waited_ += seconds;

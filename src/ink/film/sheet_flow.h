@@ -59,7 +59,7 @@ class SheetFlow {
     /// written slots, ascending.
     std::vector<std::uint32_t> run(Canvas& canvas, TileList& tiles, double seconds, const WetFilm::BeforeFn& before);
     /// Whether some ran in the last `run`.
-    bool run_on() const { return ran_ && glm::length(params_.weight.down) > 0; }
+    bool run_on() const { return ran_ && params_.weight.hysteresis > 0 && glm::length(params_.weight.down) > 0; }
     /// Whether some went further than a texel in the last `run`.
     bool fast() const { return fast_; }
     /// Whether a sheet ran there in the last `run`: no bead comes off it.

@@ -13,9 +13,6 @@ constexpr double kOfClouds = 1, kOfFibres = 1.3;  // of unevenness, on relief th
 constexpr double kFilmHeight = 10e-6;             // metres: relief over which flow is as uneven as half of that
 // Still air at 20 °C and half its humidity [HuLarson2002]: D (c_s − c_∞) / ρ, m²/s, for the rate that substrates have.
 constexpr double kVapour = 24.2e-6 * 17.3e-3 * 0.5 / 1000, kRateInStillAir = 1.0 / 60;
-// cos θ_r − cos θ_a of ink on glazed ware, which water wets at 37° and leaves at 5°: a column of 1.2 mm² holds on a
-// wall, such as 40 µm on 30 mm, and painted strokes run in beads.
-constexpr double kHysteresis = 0.2;
 constexpr double kRimLength = 1e-3;  // metres: what the rim of a wet spot adds to its area, as for drying
 
 /// Without a radius of its pores, `diffusion` is that of full pores.
@@ -53,7 +50,6 @@ FilmParams film_params(const Substrate& substrate, const Vec3& down) {
     if (wetting.pores > 0)
         p.unevenness = (kOfClouds + kOfFibres * p.pores.retention) * static_cast<double>(substrate.relief) /
                        (static_cast<double>(substrate.relief) + kFilmHeight);
-    p.weight.hysteresis = kHysteresis;
     if (glm::length(down) > 0) p.weight.down = glm::normalize(down);
     return p;
 }

@@ -53,8 +53,9 @@ struct FilmWeight {
     double bead_speed = 8e-3;  ///< m/s, speed of a bead of √2 times the radius at which it stops
     double drain = 2;          ///< 1/s: rate at which a bead draws in near liquid above `FilmParams::retained`
     double trail = 0.9;        ///< film units that a bead leaves behind
-    /// cos θ_r − cos θ_a of lines that recede and advance, here at 5° and 24°: what holds a sheet, over σ a metre.
-    double hysteresis = 0.082;
+    /// cos θ_r − cos θ_a of lines that recede and advance: what holds a sheet, over σ a metre; 0.08 at 5° and 24°. 0:
+    /// no sheets run, beads take what is too heavy. `film_params` leaves it 0.
+    double hysteresis = 0;
 };
 
 /// How liquid behaves on a surface. Amounts of liquid in film units (10 µm). Every number is finite and ≥ 0, fractions
