@@ -117,6 +117,9 @@ PlacedPiece place_on_model(const mesh::SurfaceQuery& query, const decal::PrintSu
     placed.number = piece.number;
     Box box;
     for (decal::Ring ring : piece.film) {
+        // From a point on the panel, so that no gap lies across its ends.
+        const auto first = std::ranges::find_if(ring, [&](const Vec2& p) { return locator.locate(p).has_value(); });
+        if (first != ring.end()) std::rotate(ring.begin(), first, ring.end());
         ring.push_back(ring.front());
         for (SurfacePath& path : on.lift(ring)) {
             for (const Vec3& p : path.points) box.add(p);
