@@ -65,8 +65,8 @@ TEST(CrampedPointer, WhereItHasRoomItStandsUpright) {
         EXPECT_GT((pose.rotation * Vec3(0, 0, 1)).z, std::cos(kTipped));
 }
 
-// A block 10 mm high, lower than the tuft is long: lines at the holder's side begin within it and leave through its
-// top.
+// A block 10 mm high, lower than the tuft is long, seen along its foot: lines at the holder's side begin within it and
+// leave through its top.
 TEST(CrampedPointer, BesideAStepItStandsUpright) {
     const std::string obj =
         "v -200 -200 0\nv 200 -200 0\nv 200 200 0\nv -200 200 0\nf 1 2 3 4\n"
@@ -75,10 +75,16 @@ TEST(CrampedPointer, BesideAStepItStandsUpright) {
     const mesh::TriangleMesh mesh =
         mesh::build_surface(mesh::read_obj({obj.begin(), obj.end()}, "step.obj"), {.metres_per_unit = 1e-3}).mesh;
     const mesh::SurfaceQuery query(mesh);
-    constexpr double kTipped = 0.13;  // radians that a clean stroke tips the holder ahead at first
-    const std::vector<brush::Pose> poses = stroke_at(query, brush::load_preset("wolf-medium"), -0.002);
-    ASSERT_GT(poses.size(), 50u);
-    for (const brush::Pose& pose : poses) EXPECT_GT((pose.rotation * Vec3(0, 0, 1)).z, std::cos(kTipped)) << pose.time;
+    const PointerInput hand(query, brush::load_preset("wolf-medium"), {});
+    const double low = 30 * kDegree;
+    const Vec3 sight{std::cos(low), 0, -std::sin(low)};
+    const auto found = hand.find_surface({.ray = {Vec3(0, -0.002, 0) - 0.1 * sight, sight},
+                                          .view_right = {0, -1, 0},
+                                          .view_up = {std::sin(low), 0, std::cos(low)},
+                                          .metres_per_pixel = 1e-4});
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->position.z, 0, 1e-9);
+    EXPECT_NEAR(found->normal.z, 1, 1e-9);
 }
 
 // Where a whole car is in view, 200 pixels a second are metres a second on it: no fast hand.

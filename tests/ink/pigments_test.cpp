@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "ink/composite/composite.h"
+#include "ink/film/tile/film_params.h"
 #include "ink/spectra/colorimetry.h"
 
 namespace tuft::ink {
@@ -49,6 +50,17 @@ TEST(Presets, EverySubstrateLoadsAndWritesItselfBack) {
         EXPECT_EQ(substrate_toml(parse_substrate(substrate_toml(s), "again")), substrate_toml(s));
     }
     EXPECT_GE(list_substrates().size(), 5u);
+}
+
+TEST(Presets, StillAirAndLineHysteresisAreWrittenWhereTheyAreStated) {
+    const std::string plain = substrate_toml(load_substrate("porcelain"));
+    EXPECT_EQ(plain.find("still_air_mm"), std::string::npos) << "earlier versions read it";
+    EXPECT_EQ(plain.find("line_hysteresis"), std::string::npos);
+    const Substrate stated = parse_substrate(plain + "still_air_mm = 20\nline_hysteresis = 0.08\n", "text");
+    const Substrate again = parse_substrate(substrate_toml(stated), "again");
+    EXPECT_FLOAT_EQ(again.wetting.still_air, 0.02f);
+    EXPECT_FLOAT_EQ(again.wetting.line_hysteresis, 0.08f);
+    EXPECT_FLOAT_EQ(static_cast<float>(film_params(again, {0, 0, -1}).weight.hysteresis), 0.08f);
 }
 
 TEST(Presets, NumbersInOtherUnitsAreReadBackToTheBit) {

@@ -98,6 +98,9 @@ struct Wetting {
     /// Metres: thickness of still air, whose vapour spreads by diffusion, so that large wet places dry more slowly than
     /// `evaporation`, which then is that of lines and dots of 2 mm. 0: the air moves.
     float still_air = 0;
+    /// cos θ_r − cos θ_a of contact lines that recede and advance on a wall: what holds a sheet of liquid
+    /// (film/sheet_flow.h). 0: no sheets run, what is too heavy runs as beads.
+    float line_hysteresis = 0;
 };
 
 /// A substrate.

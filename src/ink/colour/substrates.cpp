@@ -11,10 +11,27 @@ using preset::shortest_in;
 Substrate parse_substrate(std::string_view text, const std::string& source) {
     const toml::table table = parse_toml(text, source);
     const preset::Reader in(table, source);
-    in.only({"name",         "title",     "reflectance",    "roughness",         "metallic",
-             "transmission", "capacity",  "interface",      "relief_um",         "relief_length_um",
-             "absorbency",   "pores",     "pore_radius_nm", "contact_angle_deg", "retention",
-             "diffusion",    "threshold", "edge",           "evaporation",       "still_air_mm",
+    in.only({"name",
+             "title",
+             "reflectance",
+             "roughness",
+             "metallic",
+             "transmission",
+             "capacity",
+             "interface",
+             "relief_um",
+             "relief_length_um",
+             "absorbency",
+             "pores",
+             "pore_radius_nm",
+             "contact_angle_deg",
+             "retention",
+             "diffusion",
+             "threshold",
+             "edge",
+             "evaporation",
+             "still_air_mm",
+             "line_hysteresis",
              "source"});
     Substrate s;
     const auto read = [&](float& field, std::string_view key, double lo, double hi, double unit = 1) {
@@ -42,6 +59,7 @@ Substrate parse_substrate(std::string_view text, const std::string& source) {
     read(w.edge, "edge", 0, 1);
     read(w.evaporation, "evaporation", 0, 10);
     read(w.still_air, "still_air_mm", 0, 1e5, 1e-3);
+    read(w.line_hysteresis, "line_hysteresis", 0, 2);
     return s;
 }
 
@@ -58,7 +76,8 @@ std::string substrate_toml(const Substrate& s) {
            "\ncontact_angle_deg = " + shortest_float(w.contact_angle) + "\nretention = " + shortest_float(w.retention) +
            "\ndiffusion = " + shortest_float(w.diffusion) + "\nthreshold = " + shortest_float(w.threshold) +
            "\nedge = " + shortest_float(w.edge) + "\nevaporation = " + shortest_float(w.evaporation) +
-           (w.still_air > 0 ? "\nstill_air_mm = " + shortest_in(w.still_air, 1e-3) : std::string()) + "\n";
+           (w.still_air > 0 ? "\nstill_air_mm = " + shortest_in(w.still_air, 1e-3) : std::string()) +
+           (w.line_hysteresis > 0 ? "\nline_hysteresis = " + shortest_float(w.line_hysteresis) : std::string()) + "\n";
 }
 
 Substrate load_substrate(std::string_view name) {

@@ -50,6 +50,7 @@ FilmParams film_params(const Substrate& substrate, const Vec3& down) {
     if (wetting.pores > 0)
         p.unevenness = (kOfClouds + kOfFibres * p.pores.retention) * static_cast<double>(substrate.relief) /
                        (static_cast<double>(substrate.relief) + kFilmHeight);
+    p.weight.hysteresis = static_cast<double>(wetting.line_hysteresis);
     if (glm::length(down) > 0) p.weight.down = glm::normalize(down);
     return p;
 }

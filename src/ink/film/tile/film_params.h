@@ -54,7 +54,7 @@ struct FilmWeight {
     double drain = 2;          ///< 1/s: rate at which a bead draws in near liquid above `FilmParams::retained`
     double trail = 0.9;        ///< film units that a bead leaves behind
     /// cos θ_r − cos θ_a of lines that recede and advance: what holds a sheet, over σ a metre; 0.08 at 5° and 24°. 0:
-    /// no sheets run, beads take what is too heavy. `film_params` leaves it 0.
+    /// no sheets run, beads take what is too heavy.
     double hysteresis = 0;
 };
 
