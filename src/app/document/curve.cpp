@@ -102,6 +102,7 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
                 if (!hair) hair.emplace(hand.holder.tuft_length, sample.roll - angle);
                 turned = hair->follow(sample.roll - angle, glm::length(gone)) + angle;
             }
+            if (!(press > 0) && hair) hair->lift();
             if (press > 0) sample.tip_lag = stroke::tip_lag_at(hand.holder, press, sample.tilt, turned, way);
         }
         if (const auto on = query.closest_point(place.position, 0.01)) {

@@ -9,6 +9,7 @@
 
 #include "atlas/flatten/flatten.h"
 #include "atlas/flatten/reference.h"
+#include "core/system/interrupt.h"
 
 namespace tuft::decal {
 namespace {
@@ -148,6 +149,7 @@ class StrainLimiter {
         double least = range_of(references_, chart_, flat).strain();
         int idle = 0;
         for (int step = 0; step < kMostSteps && least > limit && idle < kPatience; ++step) {
+            check_interrupt();
             for (std::size_t v = 0; v < at.size(); ++v) at[v] = flat[v] + kMomentum * (flat[v] - before[v]);
             before = flat;
             flat = global_step(at, lo, hi);

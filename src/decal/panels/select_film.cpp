@@ -219,11 +219,13 @@ class Selection {
         std::vector<std::uint32_t> ahead;
         const auto halve_edge = [&](std::uint32_t t, std::size_t k) {
             const std::uint32_t a = film_.mesh.triangles[t][k], b = film_.mesh.triangles[t][(k + 1) % 3];
+            const Vec3f &from = film_.mesh.positions[a], &to = film_.mesh.positions[b];
+            const Vec3f middle(0.5 * (Vec3(from) + Vec3(to)));
+            if (middle == from || middle == to) return;  // far from the origin floats lie so far apart
             const auto [it, fresh] =
                 points.emplace(edge_key(a, b), static_cast<std::uint32_t>(film_.mesh.positions.size()));
             if (!fresh) return;
-            film_.mesh.positions.push_back(
-                Vec3f(0.5 * (Vec3(film_.mesh.positions[a]) + Vec3(film_.mesh.positions[b]))));
+            film_.mesh.positions.push_back(middle);
             ahead.push_back(t);
             if (const std::uint32_t other = film_.mesh.neighbours[3 * t + k]; other != kNone) ahead.push_back(other);
         };

@@ -52,12 +52,13 @@ struct FilmReport {
 ///
 /// Rims. Liquid enters a dry texel only from one with more than w_c + pin, so rims stay in place. pin varies by ±
 /// 40 % over about a millimetre, since surfaces are not clean. With a direction of gravity, contact lines preserve
-/// mounds (L = 0), and what they cannot hold runs down: columns of liquid as sheets (sheet_flow.h), drops and the
-/// excess of films in beads (drips.h), at most 256 at once. The rim evaporates faster, by `rim_evaporation` |∇ min(T,
-/// rim_depth)| / rim_depth: the same per metre of rim for any texel size. This draws liquid and pigment there: dark
-/// edges. In still air all of that is multiplied by what it takes up (still_air.h): 1 / R by area from a spot of radius
-/// R. A texel without liquid is closed (drying.h). With `unevenness` D and D₀ vary in clouds of about a millimetre and,
-/// as far as pores retain pigments, along fibres (fibres.h): fronts feather.
+/// mounds (L = 0), and what they cannot hold runs down: drops and the excess of films in beads (drips.h), at most 256
+/// at once, and columns of liquid as sheets (sheet_flow.h) where `FilmWeight::hysteresis` is more than 0. The rim
+/// evaporates faster, by `rim_evaporation` |∇ min(T, rim_depth)| / rim_depth: the same per metre of rim for any texel
+/// size. This draws liquid and pigment there: dark edges. In still air all of that is multiplied by what it takes up
+/// (still_air.h): 1 / R by area from a spot of radius R. A texel without liquid is closed (drying.h). With `unevenness`
+/// D and D₀ vary in clouds of about a millimetre and, as far as pores retain pigments, along fibres (fibres.h): fronts
+/// feather.
 ///
 /// Seams. Beside seams, texels are cells that tile the surface together with those of the other chart
 /// (border_cells.h). The flux through a face is one number for both sides, over seams too, so each amount is

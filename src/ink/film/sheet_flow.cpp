@@ -227,6 +227,11 @@ void SheetFlow::start(const FilmParams& params, const TileList& tiles, bool agai
     const auto numbers = [](const FilmParams& p) {
         return std::array{p.threshold, p.pin, p.weight.hysteresis, p.ripples.tension};
     };
+    if (!(params.weight.hysteresis > 0)) {
+        if (params_.weight.hysteresis > 0) release();
+        params_ = params;
+        return;
+    }
     if (params.weight.down != params_.weight.down || tiles.faces_version() != faces_version_ || downhill_.empty()) {
         downhill_.clear();
         downhill_.resize(tiles.map.n_slots());
@@ -548,9 +553,9 @@ std::vector<std::uint32_t> SheetFlow::store(Canvas& canvas, int pigments, const 
 
 std::vector<std::uint32_t> SheetFlow::run(Canvas& canvas, TileList& tiles, double seconds,
                                           const WetFilm::BeforeFn& before) {
-    if (!(params_.weight.hysteresis > 0)) return {};
     runs_.clear();
     fast_ = false;
+    if (!(params_.weight.hysteresis > 0)) return {};
     waited_ += seconds;
     if (!ran_ && waited_ < kLookEvery * (1 - 1e-9)) return {};
     if (near_seam_.empty()) mark_seams(tiles);
