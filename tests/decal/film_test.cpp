@@ -16,6 +16,21 @@ double area_of_mesh(const mesh::TriangleMesh& m) {
     return mesh::surface_area(m);
 }
 
+double farthest_from(const Vec3& middle, const FilmMesh& film) {
+    double farthest = 0;
+    for (const Vec3f& p : film.mesh.positions) farthest = std::max(farthest, glm::length(Vec3(p) - middle));
+    return farthest;
+}
+
+/// Corners lie on the model's surface where their weights say, to the rounding of floats.
+void expect_corners_on(const mesh::TriangleMesh& model, const FilmMesh& film) {
+    for (std::size_t t = 0; t < film.source.size(); ++t)
+        for (int k = 0; k < 3; ++k)
+            EXPECT_LT(glm::length(point_at(model, film.source[t], film.weights[t][static_cast<std::size_t>(k)]) -
+                                  film.mesh.position(t, k)),
+                      1e-7);
+}
+
 // A plane divides triangles and loses nothing: the area is the same, every interior edge has two sides, and corners lie
 // where their weights say.
 TEST(FilmMesh, CuttingKeepsTheSurface) {
@@ -34,11 +49,7 @@ TEST(FilmMesh, CuttingKeepsTheSurface) {
             open += glm::length(film.mesh.position(h / 3, static_cast<int>((h + 1) % 3 == 0 ? 0 : h % 3 + 1)) -
                                 film.mesh.position(h / 3, static_cast<int>(h % 3)));
     EXPECT_NEAR(open, 2 * 60 * 2 * 0.04 * std::sin(test::kPi / 60), 1e-6);
-    for (std::size_t t = 0; t < film.source.size(); ++t)
-        for (int k = 0; k < 3; ++k)
-            EXPECT_LT(glm::length(point_at(model, film.source[t], film.weights[t][static_cast<std::size_t>(k)]) -
-                                  film.mesh.position(t, k)),
-                      1e-7);
+    expect_corners_on(model, film);
 }
 
 TEST(FilmMesh, APlaneBesideAPartLeavesItWhole) {
@@ -55,9 +66,7 @@ TEST(FilmMesh, TakesWhatIsPaintedAndAMarginRoundIt) {
     const auto painted =
         test::coverage_where(model, [](const Vec3& p) { return glm::length(p - Vec3(0.05, 0.05, 0)) < 0.01; });
     const FilmMesh film = select_film(model, painted, {.bleed = 5 * kMm}, 0.5 * kMm);
-    double farthest = 0;
-    for (const Vec3f& p : film.mesh.positions)
-        farthest = std::max(farthest, glm::length(Vec3(p) - Vec3(0.05, 0.05, 0)));
+    const double farthest = farthest_from({0.05, 0.05, 0}, film);
     EXPECT_GT(farthest, 15 * kMm);
     EXPECT_LT(farthest, 16 * kMm);  // 10 + 5, and a little more, so that the cut line lies on the film
 }
@@ -69,18 +78,13 @@ TEST(FilmMesh, LargeFacetsAreDivided) {
     const Vec3 middle(0.13, 0.21, 0);
     const auto painted = test::coverage_where(model, [&](const Vec3& p) { return glm::length(p - middle) < 0.02; });
     const FilmMesh film = select_film(model, painted, {.bleed = 3 * kMm}, 0.3 * kMm);
-    double farthest = 0;
-    for (const Vec3f& p : film.mesh.positions) farthest = std::max(farthest, glm::length(Vec3(p) - middle));
+    const double farthest = farthest_from(middle, film);
     EXPECT_GT(farthest, 23 * kMm);
     EXPECT_LT(farthest, 24 * kMm);
     EXPECT_NEAR(area_of_mesh(film.mesh), test::kPi * 23.5 * 23.5 * kMm * kMm,
                 0.02 * test::kPi * 23.5 * 23.5 * kMm * kMm);
     EXPECT_EQ(film.n_labels, 1u);
-    for (std::size_t t = 0; t < film.source.size(); ++t)
-        for (int k = 0; k < 3; ++k)
-            EXPECT_LT(glm::length(point_at(model, film.source[t], film.weights[t][static_cast<std::size_t>(k)]) -
-                                  film.mesh.position(t, k)),
-                      1e-7);
+    expect_corners_on(model, film);
 }
 
 // Two dots of 6 mm, 9 mm apart, with a bleed of 3 mm: the closing that joins them needs film between them.

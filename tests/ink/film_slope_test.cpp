@@ -37,9 +37,10 @@ struct Slope {
           downhill{std::sin(b.angle), -std::cos(b.angle), 0},
           across{std::cos(b.angle), std::sin(b.angle), 0} {
         const Vec3 down = b.steepness * downhill - std::sqrt(1 - b.steepness * b.steepness) * Vec3{0, 0, 1};
-        params = film_params(load_substrate("porcelain"), down);
+        Substrate ware = load_substrate("porcelain");
+        ware.wetting.line_hysteresis = 0.082f;  // lines of ware that ink wets well: 0.5 mm² hold
+        params = film_params(ware, down);
         params.drying.evaporation = params.drying.rim_evaporation = 0;
-        params.weight.hysteresis = 0.082;  // lines of ware that ink wets well: 0.5 mm² hold
         const auto amount = [&](const Vec3& at) {
             const double x = below_top(at);
             return x > 0 && x < b.length && std::abs(glm::dot(at, across)) < 0.5 * b.width ? b.film : 0;

@@ -64,7 +64,7 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
     stroke::RollFollower follower;
     std::optional<stroke::BladeRoll> blade;
     std::optional<stroke::FollowedTurn> hair;  // as in stroke::compensate_tip_lag
-    std::vector<stroke::LedSample> led;
+    std::vector<stroke::TipLagSample> lags;
     for (std::size_t i = 0; i <= n; ++i) {
         const double part = static_cast<double>(i) / static_cast<double>(n), s = curve.front().along + part * length;
         const double press = hand.pressure * at_length(curve, s).pressure *
@@ -111,12 +111,12 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
                 glm::dot(on->normal, place.normal) > 0 && glm::distance(on->position, place.position) < 1e-3;
         }
         const Vec2 way = glm::length(ahead) > 1e-9 ? glm::normalize(ahead) : Vec2{0};
-        led.push_back({way, part * length, press * hand.holder.working_depth, sample.roll - std::atan2(-way.y, way.x),
-                       sample.tip_lag});
+        lags.push_back({way, part * length, std::min(press, 1.0) * hand.holder.working_depth,
+                        sample.roll - std::atan2(-way.y, way.x), sample.tip_lag});
         samples.push_back(sample);
     }
-    stroke::shorten_tip_lag_at_end(led, hand.holder);
-    for (std::size_t i = 0; i < samples.size(); ++i) samples[i].tip_lag = led[i].tip_lag;
+    stroke::shorten_tip_lag_at_end(lags, hand.holder);
+    for (std::size_t i = 0; i < samples.size(); ++i) samples[i].tip_lag = lags[i].tip_lag;
     return stroke::pose_holder(query, samples, hand.holder);
 }
 

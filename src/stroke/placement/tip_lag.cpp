@@ -507,7 +507,7 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
     const double turn_leans = kLeanTurns * options.tip_lag_turn;
     double since_turn = 1e9, over = 0;  // metres; how much it turned back there
     const std::vector<Turning> turning = turnings_of(trace, options, ahead);
-    std::vector<LedSample> led(trace.samples.size());
+    std::vector<TipLagSample> lags(trace.samples.size());
     double along = 0;
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
         StrokeSample& s = trace.samples[i];
@@ -532,13 +532,13 @@ StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& optio
         before = p;
         along += gone;
         const Vec2 tip_lag = tip_lag_at(options, s.pressure, s.tilt, roll, towards);
-        led[i] = {towards, along, depth_of(options, s.pressure), s.roll - angle_of(towards), tip_lag};
+        lags[i] = {towards, along, depth_of(options, s.pressure), s.roll - angle_of(towards), tip_lag};
         if (!(s.pressure > 0)) turn.lift();
     }
-    if (!dot) shorten_tip_lag_at_end(led, options);
+    if (!dot) shorten_tip_lag_at_end(lags, options);
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
         Vec3& position = trace.samples[i].position;
-        position = Vec3(Vec2(position) - off + led[i].tip_lag, position.z);
+        position = Vec3(Vec2(position) - off + lags[i].tip_lag, position.z);
     }
     return trace;
 }

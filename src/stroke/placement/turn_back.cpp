@@ -98,7 +98,7 @@ std::vector<Turning> find_turnings(std::span<const StrokeSample> samples, double
     return out;
 }
 
-void shorten_tip_lag_at_end(std::span<LedSample> samples, const HolderOptions& options) {
+void shorten_tip_lag_at_end(std::span<TipLagSample> samples, const HolderOptions& options) {
     if (!(options.toe > 0) || !options.turned) return;
     const std::size_t n = samples.size();
     const auto direction = [&](std::size_t i) {

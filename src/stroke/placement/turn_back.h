@@ -73,7 +73,7 @@ std::vector<Turning> find_turnings(std::span<const StrokeSample> samples, double
                                    bool lifted);
 
 /// One sample of a hand that leads its ink by the tip lag.
-struct LedSample {
+struct TipLagSample {
     Vec2 ahead{0};     ///< direction of the path, up to 1 long
     double along = 0;  ///< metres of path up to here
     double depth = 0;  ///< metres of the unbent tip below the surface
@@ -89,7 +89,7 @@ struct LedSample {
 ///
 /// so that the hand does not go back, and goes on by `toe_end` while it lifts the toe: the edges leave first, and the
 /// stroke ends round. In a bend a hand that waits would turn the hair about itself. Cost: linear.
-void shorten_tip_lag_at_end(std::span<LedSample> samples, const HolderOptions& options);
+void shorten_tip_lag_at_end(std::span<TipLagSample> samples, const HolderOptions& options);
 
 /// A hand that turns while nobody knows its next sample: lifted by what is known of the turn.
 class TurnFollower {
